@@ -1,0 +1,2 @@
+//! The Cortex-M image.
+fn main() {}

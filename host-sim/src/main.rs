@@ -1,0 +1,2 @@
+//! The simulator around planner-core.
+fn main() {}

@@ -6,5 +6,12 @@
 extern crate std;
 
 mod cell;
+pub mod map;
+mod math;
+mod planner;
+pub mod sight;
 
 pub use cell::{Cell, Direction, Extent};
+pub use map::{Learnt, Map, TileSet};
+pub use planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+pub use sight::Sighting;

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::cell::{Cell, Direction};
-use crate::map::Map;
+use crate::map::{Learnt, Map, TileSet};
 use crate::sight::Sighting;
 
 /// Names a robot. Lower ids win ties.
@@ -122,7 +122,7 @@ pub enum Activity {
     Stopped,
 }
 
-/// A planner of one robot on a map of `TW`×`TH` tiles.
+/// A planner of one robot on a map of at most `TW`×`TH` tiles.
 ///
 /// One tick of a robot is: [`observe`](Self::observe), any number of exchanges
 /// with other robots, [`tick`](Self::tick), and after a move
@@ -130,7 +130,7 @@ pub enum Activity {
 /// a bounded amount of work.
 pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in what the robot sees from where it stands.
-    fn observe(&mut self, sighting: &Sighting);
+    fn observe(&mut self, sighting: &Sighting) -> Learnt;
 
     /// Decides. Call it once per tick.
     fn tick(&mut self) -> Action;
@@ -144,12 +144,16 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// What the robot would tell the others about itself.
     fn status(&self) -> Status;
 
-    /// Joins what another robot knows into the own map, at most every tile once.
-    fn join(&mut self, other: &Map<TW, TH>);
+    /// The tiles of the map that changed since the last call.
+    fn take_changed(&mut self) -> TileSet<TH>;
+
+    /// Joins the given tiles of another robot's map into the own one.
+    fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt;
 
     /// Takes in what robot `id` told about itself.
     fn hear(&mut self, id: RobotId, status: Status);
 
-    /// Tile operations and window rows of the last [`tick`](Self::tick).
+    /// Work of the last [`tick`](Self::tick), counted in tile operations and
+    /// rows of the decision window.
     fn work(&self) -> u32;
 }

@@ -1,0 +1,418 @@
+//! The occupancy grid: bit-packed layers over 8×8 tiles, with frontier counts
+//! kept as cells become known.
+//!
+//! A *frontier* cell is known, free, and has an unknown 4-neighbour
+//! [Yamauchi1997]. Cells beyond the extent count as known obstacles, so the map
+//! has no special edge.
+
+mod tile;
+
+use core::fmt;
+
+pub use tile::{TILE, Tile, TileIndex, TileSet, bit_of, bits, carried, shifted};
+
+use crate::cell::{Cell, Direction, Extent};
+use crate::sight::Sighting;
+
+/// A map does not hold the grid that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ExtentError {
+    /// A grid without cells.
+    Empty,
+    /// The grid is larger than the map was compiled for.
+    TooLarge {
+        /// What was asked for.
+        asked: Extent,
+        /// What fits.
+        capacity: Extent,
+    },
+}
+
+impl fmt::Display for ExtentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the grid has no cells"),
+            Self::TooLarge { asked, capacity } => write!(
+                f,
+                "a grid of {asked} cells does not fit a map compiled for {capacity}"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ExtentError {}
+
+/// What a map learnt from a sighting, a tile or another map.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Learnt {
+    /// Cells that became known.
+    pub cells: u32,
+    /// Cells that had been free and became obstacles.
+    pub closed: u32,
+}
+
+impl Learnt {
+    /// Whether anything changed that a decision can depend on.
+    pub const fn anything(self) -> bool {
+        self.cells > 0 || self.closed > 0
+    }
+
+    fn add(&mut self, other: Self) {
+        self.cells += other.cells;
+        self.closed += other.closed;
+    }
+}
+
+/// An occupancy grid of at most `8·TW` × `8·TH` cells. `TW` is at most 64, `TH`
+/// at most 255.
+///
+/// Memory: 24 bytes a tile for the layers, 1 for its frontier count, and 8 bytes
+/// a row of tiles.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Map<const TW: usize, const TH: usize> {
+    extent: Extent,
+    tiles: [[Tile; TW]; TH],
+    frontier_counts: [[u8; TW]; TH],
+    frontiers: u32,
+    unknown: u32,
+    changed: TileSet<TH>,
+}
+
+impl<const TW: usize, const TH: usize> Default for Map<TW, TH> {
+    fn default() -> Self {
+        Self::vacant()
+    }
+}
+
+impl<const TW: usize, const TH: usize> Map<TW, TH> {
+    /// The largest grid that fits.
+    pub const CAPACITY: Extent = {
+        assert!(TW >= 1 && TW <= 64, "a map has 1 to 64 columns of tiles");
+        assert!(TH >= 1 && TH <= 64, "a map has 1 to 64 rows of tiles");
+        Extent::new((TW * TILE) as u16, (TH * TILE) as u16)
+    };
+
+    /// A map without cells: all zero, so a `static` of it lies in `.bss`. Call
+    /// [`reset`](Self::reset) before use.
+    pub const fn vacant() -> Self {
+        Self {
+            extent: Extent::new(0, 0),
+            tiles: [[Tile::UNKNOWN; TW]; TH],
+            frontier_counts: [[0; TW]; TH],
+            frontiers: 0,
+            unknown: 0,
+            changed: TileSet::new(),
+        }
+    }
+
+    /// A map of `extent` with nothing known.
+    ///
+    /// # Errors
+    /// The extent is empty or larger than [`CAPACITY`](Self::CAPACITY).
+    pub fn new(extent: Extent) -> Result<Self, ExtentError> {
+        let mut map = Self::vacant();
+        map.reset(extent)?;
+        Ok(map)
+    }
+
+    /// Forgets everything and takes a new extent, in place. Work: every tile once.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the map is then unchanged.
+    pub fn reset(&mut self, extent: Extent) -> Result<(), ExtentError> {
+        let capacity = Self::CAPACITY;
+        if extent.cells() == 0 {
+            return Err(ExtentError::Empty);
+        }
+        if extent.width > capacity.width || extent.height > capacity.height {
+            return Err(ExtentError::TooLarge {
+                asked: extent,
+                capacity,
+            });
+        }
+        self.extent = extent;
+        self.frontier_counts = [[0; TW]; TH];
+        self.frontiers = 0;
+        self.unknown = extent.cells();
+        self.changed.clear();
+        for (y, row) in self.tiles.iter_mut().enumerate() {
+            for (x, tile) in row.iter_mut().enumerate() {
+                let inside = inside_mask(extent, x, y);
+                *tile = Tile {
+                    known: !inside,
+                    obstacle: !inside,
+                    visited: 0,
+                };
+            }
+        }
+        Ok(())
+    }
+
+    /// The grid's size in cells.
+    pub const fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Rows and columns of tiles that hold cells of the extent, as `(columns, rows)`.
+    pub const fn tile_extent(&self) -> (u8, u8) {
+        (
+            self.extent.width.div_ceil(TILE as u16) as u8,
+            self.extent.height.div_ceil(TILE as u16) as u8,
+        )
+    }
+
+    /// Number of frontier cells: zero when nothing is left to explore.
+    pub const fn frontiers(&self) -> u32 {
+        self.frontiers
+    }
+
+    /// Number of cells of the extent that are not known. Never grows.
+    pub const fn unknown_cells(&self) -> u32 {
+        self.unknown
+    }
+
+    /// Number of known cells of the extent.
+    pub const fn known_cells(&self) -> u32 {
+        self.extent.cells() - self.unknown
+    }
+
+    /// One tile; outside of the map, obstacles.
+    pub fn tile(&self, at: TileIndex) -> Tile {
+        self.tiles
+            .get(usize::from(at.y))
+            .and_then(|row| row.get(usize::from(at.x)))
+            .copied()
+            .unwrap_or(Tile::OUTSIDE)
+    }
+
+    fn neighbour(&self, at: TileIndex, direction: Direction) -> Tile {
+        at.neighbour(direction)
+            .map_or(Tile::OUTSIDE, |next| self.tile(next))
+    }
+
+    fn bit(&self, cell: Cell, layer: impl Fn(Tile) -> u64) -> bool {
+        TileIndex::of(cell).map_or(layer(Tile::OUTSIDE) != 0, |(at, bit)| {
+            layer(self.tile(at)) & bit != 0
+        })
+    }
+
+    /// Whether anybody has seen the cell.
+    pub fn is_known(&self, cell: Cell) -> bool {
+        self.bit(cell, |tile| tile.known)
+    }
+
+    /// Whether the cell is known and free.
+    pub fn is_free(&self, cell: Cell) -> bool {
+        self.bit(cell, Tile::free)
+    }
+
+    /// Whether the cell is known to be an obstacle, or lies outside.
+    pub fn is_obstacle(&self, cell: Cell) -> bool {
+        self.bit(cell, |tile| tile.obstacle)
+    }
+
+    /// Whether anybody has stood on the cell.
+    pub fn is_visited(&self, cell: Cell) -> bool {
+        self.bit(cell, |tile| tile.visited)
+    }
+
+    /// Whether the cell is a frontier. Reads five tiles.
+    pub fn is_frontier(&self, cell: Cell) -> bool {
+        TileIndex::of(cell).is_some_and(|(at, bit)| self.frontier(at) & bit != 0)
+    }
+
+    /// The frontier cells of a tile. Reads five tiles, or none where the count is zero.
+    pub fn frontier(&self, at: TileIndex) -> u64 {
+        let count = self
+            .frontier_counts
+            .get(usize::from(at.y))
+            .and_then(|row| row.get(usize::from(at.x)));
+        match count {
+            None | Some(0) => 0,
+            Some(_) => self.frontier_by_neighbours(at),
+        }
+    }
+
+    fn frontier_by_neighbours(&self, at: TileIndex) -> u64 {
+        let tile = self.tile(at);
+        let unknown = !tile.known;
+        let mut beside_unknown = 0;
+        for direction in Direction::ALL {
+            let before = !self.neighbour(at, direction.opposite()).known;
+            beside_unknown |= shifted(unknown, direction) | carried(before, direction);
+        }
+        tile.free() & beside_unknown
+    }
+
+    /// Marks a cell as stood upon; ignored outside.
+    pub fn visit(&mut self, cell: Cell) {
+        if let Some((at, bit)) = TileIndex::of(cell)
+            && self.extent.contains(cell)
+        {
+            let visited = Tile {
+                visited: bit,
+                ..Tile::UNKNOWN
+            };
+            self.join_tile(at, visited);
+        }
+    }
+
+    /// Takes in what was seen. Work: at most 25 tiles, each with its four neighbours.
+    pub fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        let mut learnt = Learnt::default();
+        let (corner, span) = sighting.tile_block();
+        for dy in 0..span {
+            for dx in 0..span {
+                let (x, y) = (corner.0 + i16::from(dx), corner.1 + i16::from(dy));
+                if let (Ok(x), Ok(y)) = (u8::try_from(x), u8::try_from(y)) {
+                    let at = TileIndex { x, y };
+                    let (free, blocked) = sighting.tile(at);
+                    if free | blocked != 0 {
+                        learnt.add(self.join_tile(
+                            at,
+                            Tile {
+                                known: free | blocked,
+                                obstacle: blocked,
+                                visited: 0,
+                            },
+                        ));
+                    }
+                }
+            }
+        }
+        learnt
+    }
+
+    /// Joins another robot's tile into this map; ignored outside. Work: the tile
+    /// and its four neighbours.
+    pub fn join_tile(&mut self, at: TileIndex, other: Tile) -> Learnt {
+        let Some(tile) = self
+            .tiles
+            .get_mut(usize::from(at.y))
+            .and_then(|row| row.get_mut(usize::from(at.x)))
+        else {
+            return Learnt::default();
+        };
+        let before = *tile;
+        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
+        let mut after = before.joined(other);
+        after.visited &= inside;
+        if after == before {
+            return Learnt::default();
+        }
+        *tile = after;
+        self.changed.insert(at);
+        let learnt = Learnt {
+            cells: (after.known & !before.known).count_ones(),
+            closed: (after.obstacle & before.free()).count_ones(),
+        };
+        if learnt.anything() {
+            self.unknown -= learnt.cells;
+            self.recount(at);
+            if learnt.cells > 0 {
+                for direction in Direction::ALL {
+                    if carried(after.known & !before.known, direction) != 0
+                        && let Some(next) = at.neighbour(direction)
+                    {
+                        self.recount(next);
+                    }
+                }
+            }
+        }
+        learnt
+    }
+
+    fn recount(&mut self, at: TileIndex) {
+        let now = self.frontier_by_neighbours(at).count_ones() as u8;
+        if let Some(count) = self
+            .frontier_counts
+            .get_mut(usize::from(at.y))
+            .and_then(|row| row.get_mut(usize::from(at.x)))
+        {
+            self.frontiers = self.frontiers - u32::from(*count) + u32::from(now);
+            *count = now;
+        }
+    }
+
+    /// Joins everything that another map holds. Maps of different extents do not
+    /// join: nothing is learnt. Work: every tile once.
+    pub fn join(&mut self, other: &Self) -> Learnt {
+        let mut learnt = Learnt::default();
+        if self.extent == other.extent {
+            for (row, y) in other.tiles.iter().zip(0u8..) {
+                for (tile, x) in row.iter().zip(0u8..) {
+                    learnt.add(self.join_tile(TileIndex { x, y }, *tile));
+                }
+            }
+        }
+        learnt
+    }
+
+    /// Joins the given tiles of another map of the same extent.
+    pub fn join_tiles(&mut self, other: &Self, tiles: &TileSet<TH>) -> Learnt {
+        let mut learnt = Learnt::default();
+        if self.extent == other.extent {
+            for at in tiles.iter() {
+                learnt.add(self.join_tile(at, other.tile(at)));
+            }
+        }
+        learnt
+    }
+
+    /// The tiles that changed since the last call.
+    pub fn take_changed(&mut self) -> TileSet<TH> {
+        core::mem::take(&mut self.changed)
+    }
+}
+
+/// The cells of tile `(x, y)` that lie within the extent.
+const fn inside_mask(extent: Extent, x: usize, y: usize) -> u64 {
+    let columns = (extent.width as usize).saturating_sub(x * TILE);
+    let rows = (extent.height as usize).saturating_sub(y * TILE);
+    let row: u64 = if columns >= TILE {
+        0xff
+    } else {
+        (1 << columns) - 1
+    };
+    let all_rows = row * 0x0101_0101_0101_0101;
+    if rows >= TILE {
+        all_rows
+    } else {
+        all_rows & ((1 << (rows * TILE)) - 1)
+    }
+}
+
+/// The map as text: `#` obstacle, `.` free, `+` visited, `?` frontier, space unknown.
+impl<const TW: usize, const TH: usize> fmt::Debug for Map<TW, TH> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{} cells, {} unknown, {} frontiers",
+            self.extent, self.unknown, self.frontiers
+        )?;
+        for y in 0..self.extent.height as i16 {
+            for x in 0..self.extent.width as i16 {
+                let cell = Cell::new(x, y);
+                let sign = if !self.is_known(cell) {
+                    ' '
+                } else if self.is_obstacle(cell) {
+                    '#'
+                } else if self.is_frontier(cell) {
+                    '?'
+                } else if self.is_visited(cell) {
+                    '+'
+                } else {
+                    '.'
+                };
+                write!(f, "{sign}")?;
+            }
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,202 @@
+//! One 8×8 tile of the grid, a bit a cell, and sets of tiles.
+//!
+//! Bit `8·(y mod 8) + (x mod 8)` of a layer is the cell `(x, y)`.
+
+use crate::cell::{Cell, Direction};
+
+/// Side of a tile in cells.
+pub const TILE: usize = 8;
+
+/// The western column of a tile.
+const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
+/// The eastern column of a tile.
+const EAST_COLUMN: u64 = WEST_COLUMN << 7;
+
+/// What is known of 8×8 cells. Merging two is a bitwise OR, so it is
+/// commutative, associative, idempotent, and only ever adds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Tile {
+    /// Cells seen by anybody.
+    pub known: u64,
+    /// Cells seen blocked by anybody; known ones only. An obstacle wins over free.
+    pub obstacle: u64,
+    /// Cells that anybody has stood on.
+    pub visited: u64,
+}
+
+impl Tile {
+    /// Beyond the edge of the map: obstacles.
+    pub const OUTSIDE: Self = Self {
+        known: u64::MAX,
+        obstacle: u64::MAX,
+        visited: 0,
+    };
+
+    /// Nothing known yet.
+    pub const UNKNOWN: Self = Self {
+        known: 0,
+        obstacle: 0,
+        visited: 0,
+    };
+
+    /// Cells known and not blocked.
+    pub const fn free(self) -> u64 {
+        self.known & !self.obstacle
+    }
+
+    /// The least tile that holds what either holds.
+    #[must_use]
+    pub const fn joined(self, other: Self) -> Self {
+        Self {
+            known: self.known | other.known,
+            obstacle: self.obstacle | (other.obstacle & other.known),
+            visited: self.visited | other.visited,
+        }
+    }
+}
+
+/// Where a tile is: column and row in tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct TileIndex {
+    /// Column, in tiles.
+    pub x: u8,
+    /// Row, in tiles.
+    pub y: u8,
+}
+
+impl TileIndex {
+    /// The tile at column `x`, row `y`.
+    pub const fn new(x: u8, y: u8) -> Self {
+        Self { x, y }
+    }
+
+    /// The tile that holds `cell`, and the cell's bit in it. `None` for negative
+    /// coordinates and those beyond the largest map.
+    pub fn of(cell: Cell) -> Option<(Self, u64)> {
+        let x = u8::try_from(cell.x >> 3).ok()?;
+        let y = u8::try_from(cell.y >> 3).ok()?;
+        Some((Self { x, y }, bit_of(cell)))
+    }
+
+    /// The neighbouring tile, `None` past the western and northern edge.
+    pub fn neighbour(self, direction: Direction) -> Option<Self> {
+        let (dx, dy) = direction.delta();
+        Some(Self {
+            x: self.x.checked_add_signed(dx as i8)?,
+            y: self.y.checked_add_signed(dy as i8)?,
+        })
+    }
+
+    /// The cell of bit number `bit` (0 to 63) of this tile.
+    pub const fn cell(self, bit: u32) -> Cell {
+        Cell::new(
+            self.x as i16 * TILE as i16 + (bit & 7) as i16,
+            self.y as i16 * TILE as i16 + ((bit >> 3) & 7) as i16,
+        )
+    }
+}
+
+/// The bit of `cell` in its tile.
+pub const fn bit_of(cell: Cell) -> u64 {
+    1 << (((cell.y & 7) << 3) | (cell.x & 7))
+}
+
+/// The cells of `layer` moved one step, those that stay in the tile.
+pub const fn shifted(layer: u64, direction: Direction) -> u64 {
+    match direction {
+        Direction::East => (layer & !EAST_COLUMN) << 1,
+        Direction::South => layer << 8,
+        Direction::West => (layer & !WEST_COLUMN) >> 1,
+        Direction::North => layer >> 8,
+    }
+}
+
+/// The cells of `layer` moved one step, those that enter the neighbouring tile,
+/// as bits of that tile.
+pub const fn carried(layer: u64, direction: Direction) -> u64 {
+    match direction {
+        Direction::East => (layer & EAST_COLUMN) >> 7,
+        Direction::South => layer >> 56,
+        Direction::West => (layer & WEST_COLUMN) << 7,
+        Direction::North => layer << 56,
+    }
+}
+
+/// A set of tiles of a map with `TH` rows of at most 64 tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TileSet<const TH: usize> {
+    rows: [u64; TH],
+}
+
+impl<const TH: usize> Default for TileSet<TH> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const TH: usize> TileSet<TH> {
+    /// No tile.
+    pub const fn new() -> Self {
+        Self { rows: [0; TH] }
+    }
+
+    /// Removes every tile. `TH` word writes.
+    pub fn clear(&mut self) {
+        self.rows = [0; TH];
+    }
+
+    /// Adds a tile; one outside of the map is ignored.
+    pub fn insert(&mut self, tile: TileIndex) {
+        if let Some(row) = self.rows.get_mut(usize::from(tile.y)) {
+            *row |= 1 << (tile.x & 63);
+        }
+    }
+
+    /// Takes a tile out.
+    pub fn remove(&mut self, tile: TileIndex) {
+        if let Some(row) = self.rows.get_mut(usize::from(tile.y)) {
+            *row &= !(1 << (tile.x & 63));
+        }
+    }
+
+    /// Whether the tile is in the set.
+    pub fn contains(&self, tile: TileIndex) -> bool {
+        self.row(tile.y) >> (tile.x & 63) & 1 == 1
+    }
+
+    /// The tiles of row `y`, a bit a column.
+    pub fn row(&self, y: u8) -> u64 {
+        self.rows.get(usize::from(y)).copied().unwrap_or(0)
+    }
+
+    /// Whether no tile is in the set. At most `TH` words are read.
+    pub fn is_empty(&self) -> bool {
+        self.rows.iter().all(|&row| row == 0)
+    }
+
+    /// Adds the tiles of another set.
+    pub fn extend(&mut self, other: &Self) {
+        for (row, &more) in self.rows.iter_mut().zip(&other.rows) {
+            *row |= more;
+        }
+    }
+
+    /// The tiles, row by row from the north, each row from the west.
+    pub fn iter(&self) -> impl Iterator<Item = TileIndex> + '_ {
+        self.rows
+            .iter()
+            .zip(0u8..)
+            .flat_map(|(&row, y)| bits(row).map(move |x| TileIndex { x: x as u8, y }))
+    }
+}
+
+/// The numbers of the set bits, lowest first. At most 64 steps.
+pub fn bits(mut word: u64) -> impl Iterator<Item = u32> {
+    core::iter::from_fn(move || {
+        let bit = word.trailing_zeros();
+        word &= word.wrapping_sub(1);
+        (bit < 64).then_some(bit)
+    })
+}

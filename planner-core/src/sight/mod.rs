@@ -1,0 +1,158 @@
+//! What one look shows: cells seen free and cells seen blocked around the robot.
+//!
+//! A sighting comes from a range scan ([`RangeScan`]) on a robot, or from
+//! [`look`] where the world is at hand (simulator, tests).
+
+mod line;
+mod scan;
+
+pub use line::{line_of_sight, look};
+pub use scan::{Beam, Pose, RangeScan, ScanError};
+
+use crate::cell::Cell;
+use crate::map::{TILE, TileIndex};
+
+/// The largest perception radius in cells.
+pub const MAX_RADIUS: u8 = 15;
+
+/// Rows (and columns) of a sighting.
+const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
+
+/// Cells seen from `centre`, within [`MAX_RADIUS`] in both axes.
+///
+/// Bit `x - centre.x + 15` of row `y - centre.y + 15` is the cell `(x, y)`. No
+/// cell is both free and blocked: blocked wins. 252 bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sighting {
+    centre: Cell,
+    free: [u32; SPAN],
+    blocked: [u32; SPAN],
+}
+
+impl Sighting {
+    /// Nothing seen yet but the cell that the robot stands on, which is free.
+    pub const fn new(centre: Cell) -> Self {
+        let mut free = [0; SPAN];
+        free[MAX_RADIUS as usize] = 1 << MAX_RADIUS;
+        Self {
+            centre,
+            free,
+            blocked: [0; SPAN],
+        }
+    }
+
+    /// Where the robot stood.
+    pub const fn centre(&self) -> Cell {
+        self.centre
+    }
+
+    /// Adds a cell seen free. Ignored beyond the radius, and where it was seen blocked.
+    pub fn see_free(&mut self, cell: Cell) {
+        if let Some((row, bit)) = self.place(cell)
+            && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get(row))
+        {
+            *free |= bit & !blocked;
+        }
+    }
+
+    /// Adds a cell seen blocked. Ignored beyond the radius and for the robot's own cell.
+    pub fn see_blocked(&mut self, cell: Cell) {
+        if cell == self.centre {
+            return;
+        }
+        if let Some((row, bit)) = self.place(cell)
+            && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get_mut(row))
+        {
+            *blocked |= bit;
+            *free &= !bit;
+        }
+    }
+
+    /// Whether the cell was seen free.
+    pub fn is_free(&self, cell: Cell) -> bool {
+        self.place(cell)
+            .is_some_and(|(row, bit)| self.free.get(row).is_some_and(|free| free & bit != 0))
+    }
+
+    /// Whether the cell was seen blocked.
+    pub fn is_blocked(&self, cell: Cell) -> bool {
+        self.place(cell)
+            .is_some_and(|(row, bit)| self.blocked.get(row).is_some_and(|seen| seen & bit != 0))
+    }
+
+    /// The cells seen free, row by row. At most 961.
+    pub fn free_cells(&self) -> impl Iterator<Item = Cell> + '_ {
+        self.cells(&self.free)
+    }
+
+    /// The cells seen blocked, row by row. At most 960.
+    pub fn blocked_cells(&self) -> impl Iterator<Item = Cell> + '_ {
+        self.cells(&self.blocked)
+    }
+
+    fn cells<'a>(&'a self, rows: &'a [u32; SPAN]) -> impl Iterator<Item = Cell> + 'a {
+        let corner = self.corner();
+        rows.iter().zip(0i16..).flat_map(move |(&row, dy)| {
+            crate::map::bits(u64::from(row)).map(move |dx| {
+                Cell::new(
+                    corner.0.saturating_add(dx as i16),
+                    corner.1.saturating_add(dy),
+                )
+            })
+        })
+    }
+
+    /// The north-western corner of the rows, as `(x, y)`.
+    const fn corner(&self) -> (i16, i16) {
+        (
+            self.centre.x.saturating_sub(MAX_RADIUS as i16),
+            self.centre.y.saturating_sub(MAX_RADIUS as i16),
+        )
+    }
+
+    fn place(&self, cell: Cell) -> Option<(usize, u32)> {
+        let (x, y) = self.corner();
+        let column = u8::try_from(i32::from(cell.x) - i32::from(x)).ok()?;
+        let row = usize::try_from(i32::from(cell.y) - i32::from(y)).ok()?;
+        (usize::from(column) < SPAN && row < SPAN).then(|| (row, 1 << column))
+    }
+
+    /// The block of tiles that the rows touch: its corner in tiles, and its side.
+    pub(crate) const fn tile_block(&self) -> ((i16, i16), u8) {
+        let (x, y) = self.corner();
+        // 31 cells touch at most five tiles.
+        ((x >> 3, y >> 3), 5)
+    }
+
+    /// The cells of one tile seen free and seen blocked. Work: eight rows.
+    pub(crate) fn tile(&self, at: TileIndex) -> (u64, u64) {
+        let (x, y) = self.corner();
+        let dx = i32::from(at.x) * TILE as i32 - i32::from(x);
+        let dy = i32::from(at.y) * TILE as i32 - i32::from(y);
+        let (mut free, mut blocked) = (0, 0);
+        for row in 0..TILE as i32 {
+            let Ok(index) = usize::try_from(dy + row) else {
+                continue;
+            };
+            if let (Some(&seen_free), Some(&seen_blocked)) =
+                (self.free.get(index), self.blocked.get(index))
+            {
+                free |= u64::from(byte_at(seen_free, dx)) << (row * TILE as i32);
+                blocked |= u64::from(byte_at(seen_blocked, dx)) << (row * TILE as i32);
+            }
+        }
+        (free, blocked)
+    }
+}
+
+/// The eight bits of `row` from bit number `from` on, which may be negative.
+const fn byte_at(row: u32, from: i32) -> u8 {
+    match from {
+        0..=31 => (row >> from) as u8,
+        -7..=-1 => (row << -from) as u8,
+        _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests;

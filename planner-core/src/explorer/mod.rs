@@ -84,7 +84,7 @@ impl Config {
     pub const fn work_bound(&self) -> u32 {
         // The far search's slice, its last tile, and the first steps of the way;
         // then the window: gathering, and two floods with their way back.
-        self.slice + 16 * 33 + 2 + 256 + 11 * 32 + 2 * (3 * 1024 + 1024)
+        self.slice + 16 * 33 + 2 + 256 + 13 * 32 + 2 * (3 * 1024 + 1024)
     }
 }
 
@@ -222,17 +222,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// found, else on with the plan, else a near frontier of others for the while.
     fn decide(&mut self, found: Option<Candidate>) {
         let aim = Aim {
-            own: self.around.position,
             goal: self.role.plan.map(|plan| plan.goal),
             hysteresis: i32::from(self.config.hysteresis),
         };
         let (now, id) = (self.around.now, self.id);
-        let in_view = self.near.load(
-            &self.around.map,
-            self.around.position,
-            self.around.closed_now(),
-            &mut self.work,
-        );
+        let in_view = self.near.load(&self.around, &mut self.work);
         let mine = if in_view {
             let others = self.others.iter().flat_map(|other| {
                 let lower = other.id < id;
@@ -241,8 +235,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                     .flatten()
                     .map(move |cell| (cell, lower))
             });
-            self.near
-                .best_of_mine(&aim, self.around.closed_now(), others, &mut self.work)
+            self.near.best(&self.around, &aim, others, &mut self.work)
         } else {
             None
         };
@@ -269,7 +262,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             if in_view
                 && let Some(candidate) =
                     self.near
-                        .best_of_all(&aim, self.around.closed_now(), &mut self.work)
+                        .best(&self.around, &aim, core::iter::empty(), &mut self.work)
             {
                 self.adopt_plan(candidate);
             }

@@ -1,6 +1,5 @@
 //! The explorer in a small world of its own: the obviously correct simulator.
 
-use std::boxed::Box;
 use std::vec;
 use std::vec::Vec;
 
@@ -114,7 +113,7 @@ fn scene() -> impl Strategy<Value = Scene> {
 }
 
 struct Ended {
-    robots: Vec<Box<Small>>,
+    robots: Vec<Small>,
     stops: Vec<Option<Stop>>,
     ticks: u32,
 }
@@ -122,13 +121,11 @@ struct Ended {
 /// Runs until every robot has stopped, or `limit` ticks.
 fn run(scene: &Scene, limit: u32) -> Ended {
     let mut dice = Dice(scene.seed);
-    let mut robots: Vec<Box<Small>> = scene
+    let mut robots: Vec<Small> = scene
         .start
         .iter()
         .zip(0u8..)
-        .map(|(&start, id)| {
-            Box::new(Small::new(scene.config, RobotId(id), scene.extent, start).unwrap())
-        })
+        .map(|(&start, id)| Small::new(scene.config, RobotId(id), scene.extent, start).unwrap())
         .collect();
     let mut at = scene.start.clone();
     let mut stops = vec![None; robots.len()];

@@ -2,8 +2,9 @@
 //! waves over rows of 32 cells.
 
 use super::path::Path;
+use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
-use crate::map::{Map, TileIndex, bits};
+use crate::map::{TileIndex, bits};
 
 /// Side of the window in cells and in tiles.
 pub(crate) const SIDE: usize = 32;
@@ -82,8 +83,6 @@ fn get(rows: &Rows, row: usize, column: u32) -> bool {
 /// What the near decision looks for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// Where the robot stands.
-    pub(crate) own: Cell,
     /// The goal so far: frontiers near it are preferred.
     pub(crate) goal: Option<Cell>,
     /// By how many steps.
@@ -103,10 +102,9 @@ pub(crate) struct Candidate {
 /// Bonus of a frontier cell for each cell between it and the nearest visited one.
 const LARGEST_BONUS: i32 = 8;
 
-/// The rows that the near decision works on: 1.3 kB, kept in place.
+/// The rows that the near decision works on: 1.2 kB, kept in place, off the stack.
 pub(crate) struct NearSearch {
     window: Window,
-    free: Rows,
     frontier: Rows,
     /// Bonus − 1 of every cell, a bit a plane.
     bonus: [Rows; 3],
@@ -122,7 +120,6 @@ impl NearSearch {
     pub(crate) const fn new() -> Self {
         Self {
             window: Window { x: 0, y: 0 },
-            free: [0; SIDE],
             frontier: [0; SIDE],
             bonus: [[0; SIDE]; 3],
             open: [0; SIDE],
@@ -137,26 +134,16 @@ impl NearSearch {
     /// window; the searches find nothing otherwise.
     pub(crate) fn load<const TW: usize, const TH: usize>(
         &mut self,
-        map: &Map<TW, TH>,
-        own: Cell,
-        closed: impl Iterator<Item = Cell>,
+        around: &Surroundings<TW, TH>,
         work: &mut u32,
     ) -> bool {
-        self.window = Window::around(own);
+        self.window = Window::around(around.position);
         *work += SIDE as u32;
-        self.frontier = self.window.load(|at| map.frontier(at));
-        for cell in closed {
-            if let Some((row, column)) = self.window.place(cell)
-                && let Some(row) = self.frontier.get_mut(row)
-            {
-                *row &= !(1 << column);
-            }
-        }
+        self.frontier = self.window.load(|at| around.map.frontier(at));
         if self.frontier.iter().all(|&row| row == 0) {
             return false;
         }
-        self.free = self.window.load(|at| map.tile(at).free());
-        let visited = self.window.load(|at| map.tile(at).visited);
+        let visited = self.window.load(|at| around.map.tile(at).visited);
         self.rate(visited);
         *work += 10 * SIDE as u32;
         true
@@ -249,24 +236,10 @@ impl NearSearch {
     /// Waves from everybody at once, a step a layer; each cell belongs to whoever
     /// reaches it first. Each layer looks at the rows beside those of its front,
     /// and each cell is in one front: at most 3 · 1024 rows.
-    fn flood(
-        &mut self,
-        aim: &Aim,
-        closed: impl Iterator<Item = Cell>,
-        work: &mut u32,
-    ) -> Option<Candidate> {
-        let own = self.window.place(aim.own);
-        self.open = self.free;
-        for cell in closed {
-            if let Some((row, column)) = self.window.place(cell)
-                && let Some(row) = self.open.get_mut(row)
-            {
-                *row &= !(1 << column);
-            }
-        }
+    fn flood(&mut self, own: Cell, aim: &Aim, work: &mut u32) -> Option<Candidate> {
         self.parent = [[0; SIDE]; 2];
         self.mine = [0; SIDE];
-        set(&mut self.mine, own);
+        set(&mut self.mine, self.window.place(own));
         let mut fronts = 0u32;
         for y in 0..SIDE {
             let (Some(open), Some(mine), Some(lower), Some(higher)) = (

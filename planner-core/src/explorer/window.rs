@@ -195,42 +195,30 @@ impl NearSearch {
 
     /// The best frontier that the robot is nearer to than anybody else, ties to
     /// the lower id. `others` gives each known position or goal of another robot
-    /// and whether its id is lower.
-    pub(crate) fn best_of_mine(
+    /// and whether its id is lower; without any, every frontier counts.
+    pub(crate) fn best<const TW: usize, const TH: usize>(
         &mut self,
+        around: &Surroundings<TW, TH>,
         aim: &Aim,
-        closed: impl Iterator<Item = Cell>,
         others: impl Iterator<Item = (Cell, bool)>,
         work: &mut u32,
     ) -> Option<Candidate> {
+        *work += SIDE as u32;
+        self.open = self.window.load(|at| around.open(at));
         self.lower = [0; SIDE];
         self.higher = [0; SIDE];
         for (cell, is_lower) in others {
             let place = self.window.place(cell);
-            if place.is_some_and(|(row, column)| get(&self.free, row, column)) {
-                set(
-                    if is_lower {
-                        &mut self.lower
-                    } else {
-                        &mut self.higher
-                    },
-                    place,
-                );
+            if place.is_some_and(|(row, column)| get(&self.open, row, column)) {
+                let sources = if is_lower {
+                    &mut self.lower
+                } else {
+                    &mut self.higher
+                };
+                set(sources, place);
             }
         }
-        self.flood(aim, closed, work)
-    }
-
-    /// The best frontier, whoever is nearer.
-    pub(crate) fn best_of_all(
-        &mut self,
-        aim: &Aim,
-        closed: impl Iterator<Item = Cell>,
-        work: &mut u32,
-    ) -> Option<Candidate> {
-        self.lower = [0; SIDE];
-        self.higher = [0; SIDE];
-        self.flood(aim, closed, work)
+        self.flood(around.position, aim, work)
     }
 
     /// Waves from everybody at once, a step a layer; each cell belongs to whoever

@@ -7,7 +7,7 @@ use planner_core::map::ExtentError;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Closest, Peer};
+use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -15,6 +15,16 @@ use crate::peers::{Closest, Peer};
 pub enum PlannerKind {
     /// Each robot to the nearest frontier of its map.
     Closest,
+    /// The robot and the frontier that are nearest to each other first, and so on.
+    Greedy,
+    /// Each robot to the frontier that the fewest others are nearer to.
+    #[value(name = "minpos")]
+    #[serde(rename = "minpos")]
+    MinPos,
+    /// The same with every frontier cell for itself, decided anew in every tick.
+    #[value(name = "minpos-strong")]
+    #[serde(rename = "minpos-strong")]
+    MinPosStrong,
 }
 
 impl PlannerKind {
@@ -30,6 +40,9 @@ impl PlannerKind {
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         Ok(match self {
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
+            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
         })
     }
 }

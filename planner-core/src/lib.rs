@@ -6,9 +6,11 @@
 extern crate std;
 
 mod cell;
+pub mod explorer;
 pub mod map;
 mod math;
 mod planner;
+pub mod radio;
 pub mod sight;
 
 pub use cell::{Cell, Direction, Extent};

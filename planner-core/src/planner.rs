@@ -3,7 +3,9 @@
 use core::fmt;
 
 use crate::cell::{Cell, Direction};
+use crate::explorer::Role;
 use crate::map::{Learnt, Map, TileSet};
+use crate::radio::{FrameError, Heard, MAX_LEN};
 use crate::sight::Sighting;
 
 /// Names a robot. Lower ids win ties.
@@ -95,6 +97,9 @@ pub enum Motion {
     Moved,
     /// Something stood in the way; the robot is where it was.
     Blocked,
+    /// Another robot stands there and goes first; the robot is where it was, and
+    /// its plan holds.
+    Held,
 }
 
 /// What a robot says about itself, and remembers of the others: hints, never
@@ -138,13 +143,25 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Says how the step of the last [`Action::Move`] went.
     fn report(&mut self, motion: Motion);
 
+    /// Writes the next frame for the others and returns its length, or `None` if
+    /// there is nothing to send or the budget of bytes is used up. May be called
+    /// until it returns `None`.
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
+
+    /// Takes in a frame of another robot, at any time.
+    ///
+    /// # Errors
+    /// The frame says nothing to this robot; nothing has changed then.
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError>;
+
     /// What the robot knows.
     fn map(&self) -> &Map<TW, TH>;
 
     /// What the robot would tell the others about itself.
     fn status(&self) -> Status;
 
-    /// The tiles of the map that changed since the last call.
+    /// The tiles of the map that changed since the last call. For media that
+    /// carry whole maps; what is taken here is not transmitted first any more.
     fn take_changed(&mut self) -> TileSet<TH>;
 
     /// Joins the given tiles of another robot's map into the own one.
@@ -156,4 +173,15 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Work of the last [`tick`](Self::tick), counted in tile operations and
     /// rows of the decision window.
     fn work(&self) -> u32;
+
+    /// What the robot is about to do, for an [`exchange`](crate::explorer::exchange)
+    /// with a robot in its way. `None`: this planner does not exchange roles.
+    fn role(&self) -> Option<Role> {
+        None
+    }
+
+    /// Takes over another robot's role.
+    fn adopt(&mut self, role: Role) {
+        let _ = role;
+    }
 }

@@ -105,9 +105,11 @@ proptest! {
                 if EXTENT.contains(cell) && at.x < 4 && at.y < 3 {
                     let i = index(cell);
                     let known = tile.known >> bit & 1 == 1;
-                    naive.known[i] |= known;
-                    naive.obstacle[i] |= known && tile.obstacle >> bit & 1 == 1;
-                    naive.visited[i] |= tile.visited >> bit & 1 == 1;
+                    let obstacle = tile.obstacle >> bit & 1 == 1;
+                    let visited = tile.visited >> bit & 1 == 1;
+                    naive.known[i] |= known | obstacle | visited;
+                    naive.obstacle[i] |= obstacle;
+                    naive.visited[i] = (naive.visited[i] | visited) & !naive.obstacle[i];
                 }
             }
             let cells = (0..naive.known.len()).filter(|&i| naive.known[i] && !before.known[i]);
@@ -165,6 +167,37 @@ proptest! {
             }
         }
         assert_same(&map, &naive);
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_tile_set_is_a_set(operations in proptest::collection::vec((0u8..3, tile_index()), 0..60)) {
+        let mut set = TileSet::<3>::new();
+        let mut oracle = std::collections::BTreeSet::new();
+        for (operation, tile) in operations {
+            let key = (tile.y, tile.x);
+            match operation {
+                0 => {
+                    set.insert(tile);
+                    if tile.y < 3 {
+                        oracle.insert(key);
+                    }
+                }
+                1 => {
+                    set.remove(tile);
+                    oracle.remove(&key);
+                }
+                _ => prop_assert_eq!(set.pop_first().map(|t| (t.y, t.x)), oracle.pop_first()),
+            }
+            prop_assert_eq!(set.contains(tile), oracle.contains(&key));
+            prop_assert_eq!(set.is_empty(), oracle.is_empty());
+            let listed: Vec<_> = set.iter().map(|t| (t.y, t.x)).collect();
+            prop_assert_eq!(&listed, &oracle.iter().copied().collect::<Vec<_>>());
+            let mut union = TileSet::<3>::new();
+            union.extend(&set);
+            prop_assert_eq!(union, set);
+        }
     }
 }
 

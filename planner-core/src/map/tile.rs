@@ -12,16 +12,17 @@ const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
 /// The eastern column of a tile.
 const EAST_COLUMN: u64 = WEST_COLUMN << 7;
 
-/// What is known of 8×8 cells. Merging two is a bitwise OR, so it is
-/// commutative, associative, idempotent, and only ever adds.
+/// What is known of 8×8 cells. A cell is unknown, free, visited or an obstacle, in
+/// this order, and of two opinions the later in the order wins: merging is a
+/// maximum, hence commutative, associative, idempotent, and it only ever adds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tile {
     /// Cells seen by anybody.
     pub known: u64,
-    /// Cells seen blocked by anybody; known ones only. An obstacle wins over free.
+    /// Cells seen blocked by anybody.
     pub obstacle: u64,
-    /// Cells that anybody has stood on.
+    /// Cells that anybody has stood on and nobody has seen blocked.
     pub visited: u64,
 }
 
@@ -45,13 +46,16 @@ impl Tile {
         self.known & !self.obstacle
     }
 
-    /// The least tile that holds what either holds.
+    /// The later opinion of the two for every cell. What is visited or an
+    /// obstacle counts as known, and an obstacle not as visited.
     #[must_use]
     pub const fn joined(self, other: Self) -> Self {
+        let obstacle = self.obstacle | other.obstacle;
+        let visited = (self.visited | other.visited) & !obstacle;
         Self {
-            known: self.known | other.known,
-            obstacle: self.obstacle | (other.obstacle & other.known),
-            visited: self.visited | other.visited,
+            known: self.known | other.known | visited | obstacle,
+            obstacle,
+            visited,
         }
     }
 }
@@ -124,10 +128,13 @@ pub const fn carried(layer: u64, direction: Direction) -> u64 {
     }
 }
 
-/// A set of tiles of a map with `TH` rows of at most 64 tiles.
+/// A set of tiles of a map with at most 64 rows and columns. Inserting, removing
+/// and finding the first tile touch one word of rows each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TileSet<const TH: usize> {
     rows: [u64; TH],
+    /// The rows that hold a tile.
+    occupied: u64,
 }
 
 impl<const TH: usize> Default for TileSet<TH> {
@@ -139,18 +146,22 @@ impl<const TH: usize> Default for TileSet<TH> {
 impl<const TH: usize> TileSet<TH> {
     /// No tile.
     pub const fn new() -> Self {
-        Self { rows: [0; TH] }
+        Self {
+            rows: [0; TH],
+            occupied: 0,
+        }
     }
 
-    /// Removes every tile. `TH` word writes.
+    /// Removes every tile. At most `TH` word writes.
     pub fn clear(&mut self) {
-        self.rows = [0; TH];
+        *self = Self::new();
     }
 
     /// Adds a tile; one outside of the map is ignored.
     pub fn insert(&mut self, tile: TileIndex) {
         if let Some(row) = self.rows.get_mut(usize::from(tile.y)) {
             *row |= 1 << (tile.x & 63);
+            self.occupied |= 1 << (tile.y & 63);
         }
     }
 
@@ -158,7 +169,22 @@ impl<const TH: usize> TileSet<TH> {
     pub fn remove(&mut self, tile: TileIndex) {
         if let Some(row) = self.rows.get_mut(usize::from(tile.y)) {
             *row &= !(1 << (tile.x & 63));
+            if *row == 0 {
+                self.occupied &= !(1 << (tile.y & 63));
+            }
         }
+    }
+
+    /// Takes out the first tile in the order of [`iter`](Self::iter).
+    pub fn pop_first(&mut self) -> Option<TileIndex> {
+        let y = self.occupied.trailing_zeros();
+        let row = self.rows.get_mut(y as usize)?;
+        let tile = TileIndex {
+            x: row.trailing_zeros() as u8,
+            y: y as u8,
+        };
+        self.remove(tile);
+        Some(tile)
     }
 
     /// Whether the tile is in the set.
@@ -171,24 +197,31 @@ impl<const TH: usize> TileSet<TH> {
         self.rows.get(usize::from(y)).copied().unwrap_or(0)
     }
 
-    /// Whether no tile is in the set. At most `TH` words are read.
-    pub fn is_empty(&self) -> bool {
-        self.rows.iter().all(|&row| row == 0)
+    /// Whether no tile is in the set.
+    pub const fn is_empty(&self) -> bool {
+        self.occupied == 0
     }
 
     /// Adds the tiles of another set.
     pub fn extend(&mut self, other: &Self) {
-        for (row, &more) in self.rows.iter_mut().zip(&other.rows) {
-            *row |= more;
+        for y in bits(other.occupied) {
+            if let (Some(row), Some(more)) =
+                (self.rows.get_mut(y as usize), other.rows.get(y as usize))
+            {
+                *row |= more;
+            }
         }
+        self.occupied |= other.occupied;
     }
 
     /// The tiles, row by row from the north, each row from the west.
     pub fn iter(&self) -> impl Iterator<Item = TileIndex> + '_ {
-        self.rows
-            .iter()
-            .zip(0u8..)
-            .flat_map(|(&row, y)| bits(row).map(move |x| TileIndex { x: x as u8, y }))
+        bits(self.occupied).flat_map(|y| {
+            bits(self.row(y as u8)).map(move |x| TileIndex {
+                x: x as u8,
+                y: y as u8,
+            })
+        })
     }
 }
 

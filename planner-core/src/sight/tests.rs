@@ -41,7 +41,7 @@ fn exact_line_of_sight(from: Cell, to: Cell, is_blocked: &impl Fn(Cell) -> bool)
             }
             // The south-eastern and the south-western corner of this cell.
             for (a, diagonal) in [(1i16, dx * dy > 0), (-1, dx * dy < 0)] {
-                let inside = x + a >= west && x + a <= east && y + 1 <= south;
+                let inside = x + a >= west && x + a <= east && y < south;
                 if diagonal && inside && side(cx + i32::from(a), cy + 1) == 0 {
                     let beside = (Cell::new(x + a, y), Cell::new(x, y + 1));
                     if is_blocked(beside.0) && is_blocked(beside.1) {

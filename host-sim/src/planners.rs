@@ -8,7 +8,7 @@ use planner_core::map::ExtentError;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Closest, Peer};
+use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -18,6 +18,16 @@ pub enum PlannerKind {
     Explorer,
     /// Each robot to the nearest frontier of its map.
     Closest,
+    /// The robot and the frontier that are nearest to each other first, and so on.
+    Greedy,
+    /// Each robot to the frontier that the fewest others are nearer to.
+    #[value(name = "minpos")]
+    #[serde(rename = "minpos")]
+    MinPos,
+    /// The same with every frontier cell for itself, decided anew in every tick.
+    #[value(name = "minpos-strong")]
+    #[serde(rename = "minpos-strong")]
+    MinPosStrong,
 }
 
 impl PlannerKind {
@@ -40,6 +50,9 @@ impl PlannerKind {
                 explorer
             }
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
+            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
         })
     }
 }

@@ -223,10 +223,10 @@ pub fn run(
     scenario.check()?;
     let Extent { width, height } = scenario.world.extent();
     Ok(match width.max(height) {
-        ..=32 => run_compiled::<4, 4>(scenario, options),
-        ..=64 => run_compiled::<8, 8>(scenario, options),
-        ..=128 => run_compiled::<16, 16>(scenario, options),
-        ..=256 => run_compiled::<32, 32>(scenario, options),
+        0..=32 => run_compiled::<4, 4>(scenario, options),
+        33..=64 => run_compiled::<8, 8>(scenario, options),
+        65..=128 => run_compiled::<16, 16>(scenario, options),
+        129..=256 => run_compiled::<32, 32>(scenario, options),
         _ => run_compiled::<64, 64>(scenario, options),
     })
 }

@@ -4,9 +4,14 @@
 //! sightings and know of others only what they hear.
 
 mod closest;
+mod greedy;
+mod groups;
+mod minpos;
 mod peer;
 mod waves;
 
 pub use closest::Closest;
+pub use greedy::Greedy;
+pub use minpos::{MinPos, PaperMinPos, StrongMinPos};
 pub use peer::{Peer, Rule, Term};
 pub use waves::{Spot, Waves};

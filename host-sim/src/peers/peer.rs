@@ -101,11 +101,11 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
         })
     }
 
+    /// Whether the assignment holds and its next cell can be entered.
     fn has_way(&self) -> bool {
-        self.way.last().is_some_and(|&next| self.map.is_free(next))
-            && self.moves < R::TERM.moves
-            && !(R::TERM.until_resolved
-                && !self.goal.is_some_and(|goal| self.map.is_frontier(goal)))
+        let is_resolved = || !self.goal.is_some_and(|goal| self.map.is_frontier(goal));
+        let has_ended = self.moves >= R::TERM.moves || R::TERM.until_resolved && is_resolved();
+        !has_ended && self.way.last().is_some_and(|&next| self.map.is_free(next))
     }
 
     fn assign(&mut self) {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use clap::ValueEnum;
+use planner_core::explorer::{self, Explorer};
 use planner_core::map::ExtentError;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlannerKind {
+    /// The complete planner with bounded work.
+    Explorer,
     /// Each robot to the nearest frontier of its map.
     Closest,
     /// The robot and the frontier that are nearest to each other first, and so on.
@@ -28,17 +31,24 @@ pub enum PlannerKind {
 }
 
 impl PlannerKind {
-    /// The planner of robot `id`, which starts at `start` on a grid of `extent`.
+    /// The planner of robot `id`, which sees `range` cells far and starts at
+    /// `start` on a grid of `extent`.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
     pub fn build<const TW: usize, const TH: usize>(
         self,
         id: RobotId,
+        range: u8,
         extent: Extent,
         start: Cell,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         Ok(match self {
+            Self::Explorer => {
+                let mut explorer = Box::new(Explorer::vacant());
+                explorer.reset(explorer::Config::new(range), id, extent, start)?;
+                explorer
+            }
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
             Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),

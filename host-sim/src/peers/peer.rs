@@ -1,6 +1,7 @@
 //! A robot that walks to the frontier that a rule assigns to it.
 
 use planner_core::map::ExtentError;
+use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
 use planner_core::{
     Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,
     TileSet,
@@ -51,6 +52,7 @@ pub struct Peer<R, const TW: usize, const TH: usize> {
     rule: R,
     id: RobotId,
     map: Box<Map<TW, TH>>,
+    link: Link<TH>,
     position: Cell,
     /// By id, as last heard.
     others: Vec<Option<Status>>,
@@ -77,10 +79,13 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
     pub fn new(rule: R, id: RobotId, extent: Extent, start: Cell) -> Result<Self, ExtentError> {
         let mut map = Box::new(Map::vacant());
         map.reset(extent)?;
+        let mut link = Link::vacant();
+        link.reset(LinkConfig::new(), id, extent);
         Ok(Self {
             rule,
             id,
             map,
+            link,
             position: start,
             others: Vec::new(),
             waves: Waves::default(),
@@ -154,11 +159,13 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         self.position = sighting.centre();
         self.map.visit(self.position);
         let learnt = self.map.observe(sighting);
+        self.link.announce(&self.map.take_changed());
         self.learn(learnt)
     }
 
     fn tick(&mut self) -> Action {
         self.work = 0;
+        self.link.tick();
         if let Some(stop) = self.stopped {
             return Action::Stop(stop);
         }
@@ -187,7 +194,28 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
                 self.blocked_steps += 1;
                 self.way.clear();
             }
+            Motion::Held => self.way.push(next),
         }
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let status = self.status();
+        self.link.transmit(&self.map, status, buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+        let frame = self.link.receive(bytes, self.map.extent())?;
+        let mut learnt = Learnt::default();
+        for record in &frame.tiles {
+            learnt += self.map.join_tile(record.at, record.tile);
+        }
+        // What others told goes out again in turn, not at once.
+        self.map.take_changed();
+        self.hear(frame.sender, frame.status);
+        Ok(Heard {
+            from: frame.sender,
+            learnt: self.learn(learnt),
+        })
     }
 
     fn map(&self) -> &Map<TW, TH> {
@@ -207,7 +235,9 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {
-        self.map.take_changed()
+        let mut changed = self.map.take_changed();
+        changed.extend(&self.link.take_announced());
+        changed
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use planner_core::explorer::exchange;
-use planner_core::{Action, Cell, Motion, Planner, RobotId, TileSet};
+use planner_core::map::TileIndex;
+use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, explorer};
 
 use crate::medium::Medium;
 use crate::sensor::Sensor;
@@ -21,17 +21,40 @@ pub struct Robot<const TW: usize, const TH: usize> {
     pub alive: bool,
     /// What it did in the last tick; `None` before the first and after death.
     pub step: Option<Step>,
+    /// Whether it has exchanged its role in this tick.
+    has_exchanged: bool,
 }
 
 /// What one robot did in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Where it stood, looked and decided.
+    /// Where it stood and looked.
     pub at: Cell,
-    /// What it decided.
-    pub action: Action,
-    /// How a move went; `None` if it did not try to move.
-    pub motion: Option<Motion>,
+    /// What came of it.
+    pub deed: Deed,
+    /// Work of its planner.
+    pub work: u32,
+}
+
+/// What a decision came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deed {
+    /// Went to the neighbouring cell.
+    Moved(Direction),
+    /// Something stood in the way.
+    Blocked(Direction),
+    /// A robot that goes first stood in the way.
+    Held(Direction),
+    /// The roles passed through each other: the robot in the way goes on in its
+    /// place, and the body stays.
+    Exchanged(Direction),
+    /// Took over the role of a robot that wanted its cell, before it had acted
+    /// itself.
+    Yielded,
+    /// Stood still.
+    Waited,
+    /// Had stopped.
+    Stopped(Stop),
 }
 
 /// What goes wrong, and when.
@@ -92,8 +115,7 @@ pub struct Fleet<const TW: usize, const TH: usize> {
     rules: Rules,
     robots: Vec<Robot<TW, TH>>,
     violations: Vec<Violation>,
-    /// Roles that changed bodies in this tick: they have acted.
-    exchanged: Vec<RobotId>,
+    all_tiles: TileSet<TH>,
     tick: u32,
 }
 
@@ -105,6 +127,10 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         rules: Rules,
         planners: impl IntoIterator<Item = (Box<dyn Planner<TW, TH>>, Cell)>,
     ) -> Self {
+        let mut all_tiles = TileSet::new();
+        for (y, x) in (0..TH as u8).flat_map(|y| (0..TW as u8).map(move |x| (y, x))) {
+            all_tiles.insert(TileIndex::new(x, y));
+        }
         let robots = planners
             .into_iter()
             .zip(0..)
@@ -114,6 +140,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
                 position: start,
                 alive: true,
                 step: None,
+                has_exchanged: false,
             })
             .collect();
         Self {
@@ -122,7 +149,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             rules,
             robots,
             violations: Vec::new(),
-            exchanged: Vec::new(),
+            all_tiles,
             tick: 0,
         }
     }
@@ -145,10 +172,8 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     /// Whether every living robot has stopped.
     pub fn has_stopped(&self) -> bool {
         self.robots.iter().all(|robot| {
-            !robot.alive
-                || robot
-                    .step
-                    .is_some_and(|step| matches!(step.action, Action::Stop(_)))
+            let stopped = |step: Step| matches!(step.deed, Deed::Stopped(_));
+            !robot.alive || robot.step.is_some_and(stopped)
         })
     }
 
@@ -164,97 +189,109 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             }
         }
         for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
-            robot
-                .planner
-                .observe(&self.sensor.view(robot.position).sighting);
+            let view = self.sensor.view(robot.position);
+            robot.planner.observe(&view.sighting);
+            robot.has_exchanged = false;
         }
         if self.rules.sync != 0 && self.tick.is_multiple_of(self.rules.sync) {
             self.medium.exchange(&mut self.robots);
         }
-        self.exchanged.clear();
         for index in 0..self.robots.len() {
-            if self.robots[index].alive {
-                self.act(index);
+            let robot = &self.robots[index];
+            if robot.alive {
+                let at = robot.position;
+                let (deed, work) = match robot.has_exchanged {
+                    true => (Deed::Yielded, 0),
+                    false => (self.act(index), self.robots[index].planner.work()),
+                };
+                self.robots[index].step = Some(Step { at, deed, work });
             }
         }
         self.tick += 1;
     }
 
-    fn act(&mut self, index: usize) {
+    fn act(&mut self, index: usize) -> Deed {
         let robot = &mut self.robots[index];
-        let at = robot.position;
-        let role = robot.planner.role();
-        let has_acted = role.is_some_and(|role| self.exchanged.contains(&role.rank()));
-        let action = if has_acted {
-            Action::Wait
-        } else {
-            robot.planner.tick()
-        };
-        let mut step = Step {
-            at,
-            action,
-            motion: None,
-        };
-        if let Action::Move(direction) = action {
-            let to = at.step(direction);
-            let motion = self.motion(index, to);
-            let robot = &mut self.robots[index];
-            if motion == Motion::Moved {
-                robot.position = to;
-            }
-            robot.planner.report(motion);
-            step.motion = Some(motion);
+        match robot.planner.tick() {
+            Action::Move(direction) => self.go(index, direction),
+            Action::Wait => Deed::Waited,
+            Action::Stop(stop) => Deed::Stopped(stop),
         }
-        self.robots[index].step = Some(step);
     }
 
-    /// How the step of a robot into the neighbouring cell `to` goes.
-    fn motion(&mut self, index: usize, to: Cell) -> Motion {
-        if !self.sensor.world().is_free(to) {
+    fn go(&mut self, index: usize, direction: Direction) -> Deed {
+        let to = self.robots[index].position.step(direction);
+        let holder = self.rules.solid.then(|| self.holder(to)).flatten();
+        let motion = match holder {
+            _ if !self.can_be_entered(index, to) => Motion::Blocked,
+            None => Motion::Moved,
+            Some(holder) => match self.exchange_roles(index, holder) {
+                Meeting::Exchanged => return Deed::Exchanged(direction),
+                Meeting::Refused(motion) => motion,
+            },
+        };
+        let robot = &mut self.robots[index];
+        robot.planner.report(motion);
+        match motion {
+            Motion::Moved => {
+                robot.position = to;
+                Deed::Moved(direction)
+            }
+            Motion::Blocked => Deed::Blocked(direction),
+            Motion::Held => Deed::Held(direction),
+        }
+    }
+
+    fn holder(&self, cell: Cell) -> Option<usize> {
+        self.robots.iter().position(|robot| robot.position == cell)
+    }
+
+    fn can_be_entered(&mut self, index: usize, cell: Cell) -> bool {
+        if !self.sensor.world().is_free(cell) {
             self.violations.push(Violation {
                 tick: self.tick,
                 robot: self.robots[index].id,
-                into: to,
+                into: cell,
             });
-            return Motion::Blocked;
+            return false;
         }
-        let closed = self.rules.faults.closures.iter().any(|closure| {
-            closure.cell == to && (closure.from..closure.until).contains(&self.tick)
-        });
-        if closed {
-            return Motion::Blocked;
-        }
-        if self.rules.solid
-            && let Some(holder) = self.robots.iter().position(|robot| robot.position == to)
-        {
-            return self.meet(index, holder);
-        }
-        Motion::Moved
+        let ticks = |closure: &Closure| closure.from..closure.until;
+        let mut closures = self.rules.faults.closures.iter();
+        !closures.any(|closure| closure.cell == cell && ticks(closure).contains(&self.tick))
     }
 
-    /// A robot wants the cell that another one holds: they exchange roles, or it
-    /// waits. Both bodies stay where they are.
-    fn meet(&mut self, index: usize, holder: usize) -> Motion {
+    /// A robot wants the cell that another one holds: roles walk, bodies stay.
+    /// A robot takes part in one exchange a tick at most.
+    fn exchange_roles(&mut self, index: usize, holder: usize) -> Meeting {
         let Ok([robot, other]) = self.robots.get_disjoint_mut([index, holder]) else {
-            return Motion::Blocked;
+            return Meeting::Refused(Motion::Blocked);
         };
-        let (true, Some(mine), Some(theirs)) =
-            (other.alive, robot.planner.role(), other.planner.role())
-        else {
-            return Motion::Blocked;
+        let (Some(mine), Some(theirs)) = (robot.planner.role(), other.planner.role()) else {
+            return Meeting::Refused(Motion::Blocked);
         };
-        if self.exchanged.contains(&theirs.rank()) {
-            return Motion::Held;
+        if !other.alive {
+            return Meeting::Refused(Motion::Blocked);
         }
-        let Some((here, there)) = exchange(&mine, robot.position, &theirs, other.position) else {
-            return Motion::Held;
-        };
-        let everything = TileSet::full();
-        robot.planner.join(other.planner.map(), &everything);
-        other.planner.join(robot.planner.map(), &everything);
-        robot.planner.adopt(here);
-        other.planner.adopt(there);
-        self.exchanged.extend([mine.rank(), theirs.rank()]);
-        Motion::Held
+        if other.has_exchanged {
+            return Meeting::Refused(Motion::Held);
+        }
+        match explorer::exchange(&mine, robot.position, &theirs, other.position) {
+            None => Meeting::Refused(Motion::Held),
+            Some((for_robot, for_other)) => {
+                robot.planner.join(other.planner.map(), &self.all_tiles);
+                other.planner.join(robot.planner.map(), &self.all_tiles);
+                robot.planner.adopt(for_robot);
+                other.planner.adopt(for_other);
+                robot.has_exchanged = true;
+                other.has_exchanged = true;
+                Meeting::Exchanged
+            }
+        }
     }
+}
+
+/// What comes of it when a robot wants the cell of another.
+enum Meeting {
+    Exchanged,
+    Refused(Motion),
 }

@@ -14,7 +14,7 @@ use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PlannerKind {
-    /// The complete explorer with bounded work.
+    /// The complete planner with bounded work.
     Explorer,
     /// Each robot to the nearest frontier of its map.
     Closest,
@@ -31,17 +31,17 @@ pub enum PlannerKind {
 }
 
 impl PlannerKind {
-    /// The planner of robot `id`, which starts at `start` on a grid of `extent`
-    /// and sees `range` cells far.
+    /// The planner of robot `id`, which sees `range` cells far and starts at
+    /// `start` on a grid of `extent`.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
     pub fn build<const TW: usize, const TH: usize>(
         self,
         id: RobotId,
+        range: u8,
         extent: Extent,
         start: Cell,
-        range: u8,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         Ok(match self {
             Self::Explorer => {

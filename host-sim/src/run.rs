@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use planner_core::{Action, Cell, Extent, Motion, Stop, sight};
+use planner_core::{Cell, Extent, RobotId, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
-use crate::fleet::{Faults, Fleet, Robot, Rules, Violation};
+use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Violation};
 use crate::medium::Ideal;
 use crate::planners::PlannerKind;
 use crate::sensor::Sensor;
@@ -248,7 +248,7 @@ pub fn fleet<const TW: usize, const TH: usize>(
     let planners = scenario.starts.iter().zip(0..).map(|(&start, id)| {
         let planner = scenario
             .planner
-            .build(planner_core::RobotId(id), extent, start, scenario.range)
+            .build(RobotId(id), scenario.range, extent, start)
             .expect("the compiled size holds the world");
         (planner, start)
     });
@@ -337,19 +337,17 @@ impl Book {
                 self.looked_from[index] = Some(step.at);
                 self.coverage.look(index, self.sensor.view(step.at));
             }
-            let work = robot.planner.work();
             let noted = &mut self.outcome.robots[index];
-            noted.work += u64::from(work);
-            noted.stop = match step.action {
-                Action::Stop(stop) => Some(stop),
-                Action::Move(_) | Action::Wait => None,
-            };
-            match step.motion {
-                Some(Motion::Moved) => noted.steps += 1,
-                Some(Motion::Blocked) => noted.blocked_steps += 1,
-                Some(Motion::Held) | None => {}
+            noted.work += u64::from(step.work);
+            noted.stop = None;
+            match step.deed {
+                Deed::Moved(_) => noted.steps += 1,
+                Deed::Blocked(_) => noted.blocked_steps += 1,
+                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded | Deed::Waited => {}
+                Deed::Stopped(stop) => noted.stop = Some(stop),
             }
-            self.outcome.max_work_per_tick = self.outcome.max_work_per_tick.max(work);
+            let most = &mut self.outcome.max_work_per_tick;
+            *most = step.work.max(*most);
             if let Some(records) = &mut self.records {
                 records.push(Record::new(tick, robot, step));
             }

@@ -15,12 +15,12 @@ mod file;
 
 use std::fmt::Write;
 
-use planner_core::{Action, Cell, Direction, Motion, Stop};
+use planner_core::{Cell, Direction, Stop};
 use sha2::{Digest, Sha256};
 
 pub use file::TraceError;
 
-use crate::fleet::{Robot, Step};
+use crate::fleet::{Deed, Robot, Step};
 use crate::run::Scenario;
 
 /// The columns of a record.
@@ -46,8 +46,10 @@ pub struct Record {
     pub robot: u8,
     /// Where it stood, looked and decided.
     pub at: Cell,
-    /// 0 to 3: moved east, south, west, north. 4 to 7: tried to, and was
-    /// blocked. 8: waited. 16 to 20: stopped, by the order of [`Stop`].
+    /// 0 to 3: moved east, south, west, north; 4 to 7: tried to, and was
+    /// blocked; 8 to 11: and was held by a robot that goes first; 12 to 15: and
+    /// exchanged roles with the robot there. 16: waited; 17: gave its role away
+    /// before it had acted. 32 to 36: had stopped, by the order of [`Stop`].
     pub action: u8,
     /// Where it was going; in the file and the digest -1, -1 for nowhere.
     pub goal: Option<Cell>,
@@ -57,9 +59,9 @@ pub struct Record {
     pub work: u32,
 }
 
-const WAIT: u8 = 8;
-const HELD: u8 = 12;
-const STOP: u8 = 16;
+const WAITED: u8 = 16;
+const YIELDED: u8 = 17;
+const STOPPED: u8 = 32;
 const NOWHERE: Cell = Cell::new(-1, -1);
 
 impl Record {
@@ -69,22 +71,18 @@ impl Record {
         robot: &Robot<TW, TH>,
         step: Step,
     ) -> Self {
-        let action = match step.action {
-            Action::Move(direction) => match step.motion {
-                Some(Motion::Moved) => direction as u8,
-                Some(Motion::Blocked) | None => 4 + direction as u8,
-                Some(Motion::Held) => HELD + direction as u8,
-            },
-            Action::Wait => WAIT,
-            Action::Stop(stop) => {
-                STOP + match stop {
-                    Stop::Complete => 0,
-                    Stop::Enclosed { .. } => 1,
-                    Stop::Blocked { .. } => 2,
-                    Stop::BackAtStart { .. } => 3,
-                    Stop::NoTrace { .. } => 4,
-                }
-            }
+        let action = match step.deed {
+            Deed::Moved(direction) => direction as u8,
+            Deed::Blocked(direction) => 4 + direction as u8,
+            Deed::Held(direction) => 8 + direction as u8,
+            Deed::Exchanged(direction) => 12 + direction as u8,
+            Deed::Waited => WAITED,
+            Deed::Yielded => YIELDED,
+            Deed::Stopped(Stop::Complete) => STOPPED,
+            Deed::Stopped(Stop::Enclosed { .. }) => STOPPED + 1,
+            Deed::Stopped(Stop::Blocked { .. }) => STOPPED + 2,
+            Deed::Stopped(Stop::BackAtStart { .. }) => STOPPED + 3,
+            Deed::Stopped(Stop::NoTrace { .. }) => STOPPED + 4,
         };
         Self {
             tick,
@@ -93,7 +91,7 @@ impl Record {
             action,
             goal: robot.planner.status().goal,
             known: robot.planner.map().known_cells(),
-            work: robot.planner.work(),
+            work: step.work,
         }
     }
 
@@ -107,7 +105,7 @@ impl Record {
 
     /// Whether the robot had stopped.
     pub fn has_stopped(&self) -> bool {
-        self.action >= STOP
+        self.action >= STOPPED
     }
 
     fn bytes(&self) -> [u8; 22] {

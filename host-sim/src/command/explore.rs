@@ -23,7 +23,7 @@ pub(crate) struct Explore {
     /// The map: .png, .pgm, .yaml (ROS map_server), .map (MovingAI) or .txt.
     map: PathBuf,
     /// What decides in each robot.
-    #[arg(long, value_name = "NAME", default_value = "closest")]
+    #[arg(long, value_name = "NAME", default_value = "explorer")]
     planner: PlannerKind,
     /// Number of robots, 1 to 255.
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..))]

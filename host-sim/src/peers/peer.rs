@@ -165,10 +165,10 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
 
     fn tick(&mut self) -> Action {
         self.work = 0;
+        self.link.tick();
         if let Some(stop) = self.stopped {
             return Action::Stop(stop);
         }
-        self.link.tick();
         self.clock += 1;
         let now = self.clock;
         self.closed.retain(|&(_, until)| until > now);
@@ -183,9 +183,6 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     }
 
     fn report(&mut self, motion: Motion) {
-        if motion == Motion::Held {
-            return;
-        }
         let Some(next) = self.way.pop() else { return };
         match motion {
             Motion::Moved => {
@@ -197,8 +194,28 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
                 self.blocked_steps += 1;
                 self.way.clear();
             }
-            Motion::Held => {}
+            Motion::Held => self.way.push(next),
         }
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let status = self.status();
+        self.link.transmit(&self.map, status, buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+        let frame = self.link.receive(bytes, self.map.extent())?;
+        let mut learnt = Learnt::default();
+        for record in &frame.tiles {
+            learnt += self.map.join_tile(record.at, record.tile);
+        }
+        // What others told goes out again in turn, not at once.
+        self.map.take_changed();
+        self.hear(frame.sender, frame.status);
+        Ok(Heard {
+            from: frame.sender,
+            learnt: self.learn(learnt),
+        })
     }
 
     fn map(&self) -> &Map<TW, TH> {
@@ -215,25 +232,6 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
             goal: self.goal,
             activity,
         }
-    }
-
-    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
-        let status = self.status();
-        self.link.transmit(&self.map, status, buffer)
-    }
-
-    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let frame = self.link.receive(bytes, self.map.extent())?;
-        let mut learnt = Learnt::default();
-        for record in &frame.tiles {
-            learnt += self.map.join_tile(record.at, record.tile);
-        }
-        self.map.take_changed();
-        self.hear(frame.sender, frame.status);
-        Ok(Heard {
-            from: frame.sender,
-            learnt: self.learn(learnt),
-        })
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {

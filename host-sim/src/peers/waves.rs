@@ -6,6 +6,9 @@ use planner_core::{Cell, Direction, Map, RobotId};
 /// A cell of the padded grid of bits, as its number.
 pub type Spot = u32;
 
+/// Blocked spots before the first cell of a row; a byte, as tiles come in bytes.
+const MARGIN: Spot = 8;
+
 /// One wave for each robot, all at the same distance from where they began.
 ///
 /// The buffers are reused from decision to decision.
@@ -19,8 +22,8 @@ pub struct Waves {
     visits: u32,
 }
 
-/// Free and frontier cells as rows of bits, with a margin of blocked cells: bit
-/// `(y + 1) · stride + x` of the bytes.
+/// Free and frontier cells as rows of bits, with a margin of blocked cells on
+/// all sides, so that the eight spots around a free one are always there.
 #[derive(Debug, Default)]
 struct Grid {
     stride: u32,
@@ -132,8 +135,8 @@ impl Waves {
 
     /// The cell at a spot.
     pub fn cell(&self, spot: Spot) -> Cell {
-        let stride = self.grid.stride;
-        Cell::new((spot % stride) as i16, (spot / stride) as i16 - 1)
+        let (x, y) = (spot % self.grid.stride, spot / self.grid.stride);
+        Cell::new((x - MARGIN) as i16, y as i16 - 1)
     }
 
     /// Writes the way from `from`, where the own wave began, to `goal`, which
@@ -156,7 +159,7 @@ impl Grid {
         closed: impl Iterator<Item = Cell>,
     ) {
         let (columns, rows) = map.tile_extent();
-        let bytes = usize::from(columns) + 1;
+        let bytes = usize::from(columns) + 2;
         self.stride = 8 * bytes as u32;
         for bits in [&mut self.free, &mut self.frontier] {
             bits.clear();
@@ -167,7 +170,7 @@ impl Grid {
                 let at = TileIndex::new(x, y);
                 let free = map.tile(at).free().to_le_bytes();
                 let frontier = map.frontier(at).to_le_bytes();
-                let first = (8 * usize::from(y) + 1) * bytes + usize::from(x);
+                let first = (8 * usize::from(y) + 1) * bytes + 1 + usize::from(x);
                 for row in 0..8 {
                     self.free[first + row * bytes] = free[row];
                     self.frontier[first + row * bytes] = frontier[row];
@@ -182,7 +185,7 @@ impl Grid {
     }
 
     fn spot(&self, cell: Cell) -> Spot {
-        (cell.y + 1) as u32 * self.stride + cell.x as u32
+        (cell.y + 1) as u32 * self.stride + cell.x as u32 + MARGIN
     }
 }
 

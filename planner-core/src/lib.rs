@@ -6,6 +6,7 @@
 extern crate std;
 
 mod cell;
+pub mod local_frontiers;
 pub mod map;
 mod math;
 mod planner;

@@ -334,7 +334,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         let learnt = self.around.map.observe(sighting);
         self.around.map.visit(self.around.position);
-        self.link.announce(&self.around.map.take_changed());
+        self.link.announce(&mut self.around.map);
         self.learn(learnt)
     }
 
@@ -432,26 +432,16 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let frame = self.link.receive(bytes, self.around.map.extent())?;
-        let mut learnt = Learnt::default();
-        for record in &frame.tiles {
-            learnt += self.around.map.join_tile(record.at, record.tile);
+        let heard = self.link.receive(bytes, &mut self.around.map)?;
+        self.learn(heard.learnt);
+        if let Some(status) = heard.status {
+            self.hear(heard.from, status);
         }
-        // What others told goes out again in turn, not at once.
-        self.around.map.take_changed();
-        let (own, now) = (self.around.position, self.around.now);
-        self.others
-            .hear(frame.sender, frame.status, Some(frame.sequence), own, now);
-        Ok(Heard {
-            from: frame.sender,
-            learnt: self.learn(learnt),
-        })
+        Ok(heard)
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {
-        let mut changed = self.around.map.take_changed();
-        changed.extend(&self.link.take_announced());
-        changed
+        self.link.take_changed(&mut self.around.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
@@ -462,7 +452,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn hear(&mut self, id: RobotId, status: Status) {
         if id != self.id {
             self.others
-                .hear(id, status, None, self.around.position, self.around.now);
+                .hear(id, status, self.around.position, self.around.now);
         }
     }
 

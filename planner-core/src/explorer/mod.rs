@@ -233,8 +233,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             hysteresis: i32::from(self.config.hysteresis),
         };
         let (now, id) = (self.around.now, self.id);
-        let in_view = self.near.load(&self.around, &mut self.work);
-        let mine = if in_view {
+        let bonus = self.near.load(&self.around, &mut self.work);
+        let mine = if let Some(bonus) = &bonus {
             let others = self.others.exploring().flat_map(|other| {
                 let lower = other.id < id;
                 [Some(other.status.position), other.status.goal]
@@ -242,7 +242,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                     .flatten()
                     .map(move |cell| (cell, lower))
             });
-            self.near.best(&self.around, &aim, others, &mut self.work)
+            self.near
+                .best(&self.around, &aim, bonus, others, &mut self.work)
         } else {
             None
         };
@@ -266,10 +267,14 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             if self.far.is_idle() {
                 self.start_sweep();
             }
-            if in_view
-                && let Some(candidate) =
-                    self.near
-                        .best(&self.around, &aim, core::iter::empty(), &mut self.work)
+            if let Some(bonus) = &bonus
+                && let Some(candidate) = self.near.best(
+                    &self.around,
+                    &aim,
+                    bonus,
+                    core::iter::empty(),
+                    &mut self.work,
+                )
             {
                 self.adopt_plan(candidate);
             }

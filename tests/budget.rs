@@ -1,0 +1,22 @@
+//! The sizes of whole planners against `fixtures/budget.txt`.
+
+#[allow(dead_code, unreachable_pub)]
+#[path = "../xtask/src/budget.rs"]
+mod file;
+
+use std::path::Path;
+
+use planner_core::Map;
+
+#[test]
+fn planners_fit_their_budget() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let budget = file::Budget::read(root).unwrap_or_else(|error| panic!("{error}"));
+    let measured = [
+        ("map_64x64_bytes", size_of::<Map<8, 8>>() as u64),
+        ("map_128x128_bytes", size_of::<Map<16, 16>>() as u64),
+    ];
+    if let Err(error) = budget.check("map_", &measured) {
+        panic!("{error}");
+    }
+}

@@ -6,6 +6,7 @@
 extern crate std;
 
 mod cell;
+pub mod explorer;
 pub mod map;
 mod math;
 mod planner;

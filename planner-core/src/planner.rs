@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::cell::{Cell, Direction};
+use crate::explorer::Role;
 use crate::map::{Learnt, Map, TileSet};
 use crate::sight::Sighting;
 
@@ -95,6 +96,9 @@ pub enum Motion {
     Moved,
     /// Something stood in the way; the robot is where it was.
     Blocked,
+    /// Another robot stands there and goes first; the robot is where it was, and
+    /// its plan holds.
+    Held,
 }
 
 /// What a robot says about itself, and remembers of the others: hints, never
@@ -156,4 +160,15 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Work of the last [`tick`](Self::tick), counted in tile operations and
     /// rows of the decision window.
     fn work(&self) -> u32;
+
+    /// What the robot is about to do, for an [`exchange`](crate::explorer::exchange)
+    /// with a robot in its way. `None`: this planner does not exchange roles.
+    fn role(&self) -> Option<Role> {
+        None
+    }
+
+    /// Takes over another robot's role.
+    fn adopt(&mut self, role: Role) {
+        let _ = role;
+    }
 }

@@ -1,0 +1,304 @@
+//! The far decision: who goes to which frontier beyond the window, and the way.
+//!
+//! The *sweep* is greedy matching, shortest pair first, computed from last heard
+//! positions: everybody's waves run at once, and whoever meets a frontier that is
+//! not taken is served. Then the *route* runs back from the own frontier until it
+//! meets the robot, wherever that has got to in the meantime.
+
+use heapless::Vec;
+
+use super::others::Others;
+use super::path::Path;
+use super::surroundings::Surroundings;
+use super::wave::{LABELS, Wave};
+use super::window::{Candidate, Rows, SIDE, Window};
+use crate::cell::Cell;
+use crate::planner::RobotId;
+
+/// Rounds in which the robots that were not served try again, before the robot
+/// looks for itself alone.
+const ROUNDS: u8 = 2;
+
+/// Largest distance at which a served robot speaks for frontier cells beside its own.
+const LARGEST_TAKE: u16 = 12;
+
+/// What the far decision has come to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Outcome {
+    /// Not there yet.
+    Searching,
+    /// A frontier, and the way to it from where the robot stands.
+    Found(Candidate),
+    /// No frontier can be reached.
+    NothingLeft,
+    /// The frontier that a way was looked for cannot be reached (any more).
+    Lost,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Idle,
+    Sweep { round: u8 },
+    Route { goal: Cell },
+}
+
+/// The far decision in slices.
+pub(crate) struct FarSearch<const TW: usize, const TH: usize> {
+    wave: Wave<TW, TH>,
+    stage: Stage,
+    /// Where everybody was when the sweep began, by id; the index is the label.
+    seeds: Vec<(RobotId, Cell), LABELS>,
+    own_label: u8,
+    /// Labels that have got a frontier.
+    served: u16,
+}
+
+impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            wave: Wave::new(),
+            stage: Stage::Idle,
+            seeds: Vec::new(),
+            own_label: 0,
+            served: 0,
+        }
+    }
+
+    pub(crate) fn is_idle(&self) -> bool {
+        self.stage == Stage::Idle
+    }
+
+    /// Drops the search.
+    pub(crate) fn cancel(&mut self) {
+        self.stage = Stage::Idle;
+    }
+
+    /// Starts a sweep from where everybody was heard last.
+    pub(crate) fn start_sweep(
+        &mut self,
+        id: RobotId,
+        others: &Others,
+        around: &Surroundings<TW, TH>,
+    ) {
+        self.seeds.clear();
+        self.own_label = 0;
+        let others = others
+            .iter()
+            .filter(|other| around.map.is_free(other.position))
+            .map(|other| (other.id, other.position));
+        let mut own = Some((id, around.position));
+        for (other, position) in others {
+            if other > id
+                && let Some(seed) = own.take()
+            {
+                let _ = self.seeds.push(seed);
+            }
+            if own.is_some() {
+                self.own_label += 1;
+            }
+            let _ = self.seeds.push((other, position));
+        }
+        if let Some(seed) = own {
+            let _ = self.seeds.push(seed);
+        }
+        self.served = 0;
+        self.start_round(0, around.position);
+    }
+
+    fn start_round(&mut self, round: u8, own: Cell) {
+        self.wave.clear();
+        if round < ROUNDS {
+            for (&(_, cell), label) in self.seeds.iter().zip(0u8..) {
+                if self.served >> label & 1 == 0 {
+                    self.wave.seed(cell, label);
+                }
+            }
+        } else {
+            self.wave.seed(own, self.own_label);
+        }
+        self.stage = Stage::Sweep { round };
+    }
+
+    /// Starts looking for the way to a frontier that is already chosen.
+    pub(crate) fn start_route(&mut self, goal: Cell) {
+        self.wave.clear();
+        self.wave.seed_route(goal);
+        self.stage = Stage::Route { goal };
+    }
+
+    /// Goes on with the search for at most `slice` tile operations, each with the
+    /// four tiles beside it, and one operation more for each frontier given to another.
+    pub(crate) fn advance(
+        &mut self,
+        around: &Surroundings<TW, TH>,
+        slice: u32,
+        work: &mut u32,
+    ) -> Outcome {
+        let end = work.saturating_add(slice);
+        while *work < end {
+            let outcome = match self.stage {
+                Stage::Idle => return Outcome::Searching,
+                Stage::Sweep { round } => self.sweep_tile(round, around, work),
+                Stage::Route { goal } => self.route_tile(goal, around, work),
+            };
+            if !matches!(outcome, Outcome::Searching) {
+                return outcome;
+            }
+        }
+        Outcome::Searching
+    }
+
+    /// One tile of a sweep's layer.
+    fn sweep_tile(&mut self, round: u8, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
+        *work += 1;
+        let Some((at, mut front)) = self.wave.next_front() else {
+            if round >= ROUNDS {
+                self.stage = Stage::Idle;
+                return Outcome::NothingLeft;
+            }
+            self.start_round(round + 1, around.position);
+            return Outcome::Searching;
+        };
+        let frontier = around.map.frontier(at);
+        while front != 0 {
+            *work += 1;
+            let (label, cells) = self.wave.first_label(at, front);
+            front &= !cells;
+            if self.served >> label & 1 == 1 {
+                continue;
+            }
+            let mine = label == self.own_label;
+            let mut hits = cells & frontier & !self.wave.taken(at);
+            if mine {
+                hits &= !around.closed.mask(at, around.now);
+            }
+            if hits == 0 {
+                let served = self.served;
+                if mine {
+                    self.wave
+                        .spread(at, cells, label, served, |tile| around.open(tile));
+                } else {
+                    self.wave
+                        .spread(at, cells, label, served, |tile| around.free(tile));
+                }
+                continue;
+            }
+            let goal = at.cell(hits.trailing_zeros());
+            if mine {
+                self.start_route(goal);
+                return Outcome::Searching;
+            }
+            self.served |= 1 << label;
+            self.speak_for(goal, around, work);
+        }
+        Outcome::Searching
+    }
+
+    /// A served robot takes its frontier cell and those connected to it within
+    /// the perception radius: it will see what lies behind them.
+    fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
+        let window = Window::around(goal);
+        let frontier = window.load(|at| around.map.frontier(at));
+        let reach = u16::from(around.radius).min(LARGEST_TAKE);
+        let taken = connected(&frontier, window, goal, reach);
+        *work += SIDE as u32;
+        for (at, row, column) in window.tiles() {
+            let mut cells = 0u64;
+            for (row, shift) in taken.iter().skip(row).zip((0..64).step_by(8)) {
+                cells |= u64::from((row >> column) as u8) << shift;
+            }
+            self.wave.take(at, cells);
+        }
+    }
+
+    /// One tile of a route's layer.
+    fn route_tile(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
+        *work += 1;
+        // The robot may have walked into the wave, or the wave reached the robot.
+        if self.wave.is_reached(around.position) {
+            self.stage = Stage::Idle;
+            return Outcome::Found(self.way(goal, around.position, work));
+        }
+        if !around.map.is_frontier(goal) {
+            self.stage = Stage::Idle;
+            return Outcome::Lost;
+        }
+        let Some((at, front)) = self.wave.next_front() else {
+            self.stage = Stage::Idle;
+            return Outcome::Lost;
+        };
+        self.wave.spread_route(at, front, |tile| around.open(tile));
+        Outcome::Searching
+    }
+
+    /// The way from the robot to the goal: as many steps as a path holds, and the
+    /// length of all, exact if it fits a path, else not less than it is.
+    fn way(&self, goal: Cell, own: Cell, work: &mut u32) -> Candidate {
+        let mut path = Path::new();
+        let mut cell = own;
+        while cell != goal {
+            *work += 1;
+            match self.wave.direction_at(cell) {
+                Some(step) if path.push_back(step) => cell = cell.step(step),
+                _ => break,
+            }
+        }
+        let length = if cell == goal {
+            path.len()
+        } else {
+            (self.wave.layer() + 1).max(path.len())
+        };
+        Candidate { goal, length, path }
+    }
+}
+
+/// The cells of `rows` 8-connected to `from` within Chebyshev distance `reach`:
+/// passes down and up until nothing is added, at most twice the window's side.
+fn connected(rows: &Rows, window: Window, from: Cell, reach: u16) -> Rows {
+    let mut within = [0; SIDE];
+    let Some((row, column)) = window.place(from) else {
+        return within;
+    };
+    let (reach, centre) = (u32::from(reach), row as u32);
+    let left = column.saturating_sub(reach);
+    let right = (column + reach).min(SIDE as u32 - 1);
+    let columns = (u32::MAX << left) & (u32::MAX >> (SIDE as u32 - 1 - right));
+    for ((masked, &cells), y) in within.iter_mut().zip(rows).zip(0u32..) {
+        if y.abs_diff(centre) <= reach {
+            *masked = cells & columns;
+        }
+    }
+    let mut found = [0; SIDE];
+    if let Some(seed) = found.get_mut(row) {
+        *seed = 1 << column;
+    }
+    for _ in 0..SIDE {
+        let before = found;
+        let grow = |above: u32, row: &mut u32, mask: u32| {
+            let near = *row | above;
+            let mut grown = (near | near << 1 | near >> 1) & mask;
+            // Along the row, as far as it goes: at most 31 more.
+            for _ in 0..SIDE {
+                let more = (grown | grown << 1 | grown >> 1) & mask;
+                if more == grown {
+                    break;
+                }
+                grown = more;
+            }
+            *row |= grown;
+            *row
+        };
+        let mut above = 0;
+        for (row, &mask) in found.iter_mut().zip(&within) {
+            above = grow(above, row, mask);
+        }
+        let mut below = 0;
+        for (row, &mask) in found.iter_mut().zip(&within).rev() {
+            below = grow(below, row, mask);
+        }
+        if found == before {
+            break;
+        }
+    }
+    found
+}

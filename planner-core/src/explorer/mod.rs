@@ -1,0 +1,452 @@
+//! The complete explorer: bounded work per tick, no matter how large the map is
+//! and how many robots there are.
+//!
+//! Near decisions ([`window`]) choose among the frontiers around the robot; where
+//! it has none of its own there, a search over the whole map ([`far`]) runs in
+//! the background, a slice a tick, while the robot keeps walking. What makes it
+//! complete is the *commitment* rule: since the robot last learnt anything, it
+//! may change to a longer plan only a fixed number of times.
+//!
+//! Let U be the number of cells unknown to the robot; it never grows. While a
+//! frontier can be reached, U falls in bounded time: take (changes left, steps
+//! left) in lexicographic order; a step lowers the second, a change to a longer
+//! plan the first, a search ends after a number of slices bounded by the map, and
+//! at the end of a plan the robot stands on a frontier cell and sees its unknown
+//! neighbour. If no frontier can be reached, the cells known around the robot are
+//! closed off by obstacles: it has seen everything that it can reach. Messages
+//! were not used: each robot alone is complete, and any message, late, twice, out
+//! of order or lost, only makes U fall sooner.
+
+mod closed;
+mod far;
+mod others;
+mod path;
+mod role;
+mod surroundings;
+mod wave;
+mod window;
+
+pub use others::MAX_OTHERS;
+pub use role::{Role, exchange};
+
+use closed::ClosedCells;
+use far::{FarSearch, Outcome};
+use others::Others;
+use role::Plan;
+use surroundings::Surroundings;
+use window::{Aim, Candidate, NearSearch};
+
+use crate::cell::{Cell, Direction, Extent};
+use crate::map::{ExtentError, Learnt, Map, TileSet};
+use crate::planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+use crate::sight::Sighting;
+
+/// How an explorer decides. One configuration serves a whole fleet; none of it
+/// depends on the map's size or the number of robots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Config {
+    /// Perception radius of the robots, in cells: how far around a frontier cell
+    /// others are taken to look when they have got there.
+    pub radius: u8,
+    /// Tile operations a tick for the far search.
+    pub slice: u32,
+    /// Steps after which the robot decides again.
+    pub d_max: u8,
+    /// Changes to a longer plan between two things learnt.
+    pub tokens: u8,
+    /// By how many steps a frontier near the goal so far is preferred.
+    pub hysteresis: u8,
+    /// Ticks that a far goal is kept before another is searched for.
+    pub far_pause: u32,
+    /// Ticks after which a robot that was not heard of is forgotten.
+    pub memory: u32,
+    /// Refusals after which a cell is not waited for any more, if nothing else is left.
+    pub patience: u8,
+}
+
+impl Config {
+    /// The configuration that is shipped, for a perception radius of `radius` cells.
+    pub const fn new(radius: u8) -> Self {
+        Self {
+            radius,
+            slice: 1024,
+            d_max: 2,
+            tokens: 2,
+            hysteresis: 3,
+            far_pause: 8,
+            memory: 256,
+            patience: 8,
+        }
+    }
+
+    /// No [`Planner::tick`] counts more work than this.
+    pub const fn work_bound(&self) -> u32 {
+        // The far search's slice, its last tile, and the first steps of the way;
+        // then the window: gathering, and two floods with their way back.
+        self.slice + 16 * 33 + 2 + 256 + 13 * 32 + 2 * (3 * 1024 + 1024)
+    }
+}
+
+/// The complete planner with bounded work.
+pub struct Explorer<const TW: usize, const TH: usize> {
+    config: Config,
+    id: RobotId,
+    around: Surroundings<TW, TH>,
+    role: Role,
+    others: Others,
+    near: NearSearch,
+    far: FarSearch<TW, TH>,
+    /// No new far search before this tick while there is a plan.
+    far_again: u32,
+    /// Whether the map has changed, or a cell was closed, since the far search began.
+    far_is_doubtful: bool,
+    /// The step that the last tick asked for.
+    pending: Option<Direction>,
+    work: u32,
+}
+
+impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
+    /// An explorer without a map; a `static` of it costs no flash. Call
+    /// [`reset`](Self::reset) before use: until then it only waits.
+    pub const fn vacant() -> Self {
+        Self {
+            config: Config {
+                radius: 0,
+                slice: 0,
+                d_max: 0,
+                tokens: 0,
+                hysteresis: 0,
+                far_pause: 0,
+                memory: 0,
+                patience: 0,
+            },
+            id: RobotId(0),
+            around: Surroundings {
+                map: Map::vacant(),
+                closed: ClosedCells::new(),
+                position: Cell::new(0, 0),
+                radius: 0,
+                now: 0,
+            },
+            role: Role::new(RobotId(0)),
+            others: Others::new(),
+            near: NearSearch::new(),
+            far: FarSearch::new(),
+            far_again: 0,
+            far_is_doubtful: false,
+            pending: None,
+            work: 0,
+        }
+    }
+
+    /// An explorer on a grid of `extent`, standing on `start`.
+    ///
+    /// # Errors
+    /// The grid does not fit the map.
+    pub fn new(
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        start: Cell,
+    ) -> Result<Self, ExtentError> {
+        let mut explorer = Self::vacant();
+        explorer.reset(config, id, extent, start)?;
+        Ok(explorer)
+    }
+
+    /// Starts anew, in place.
+    ///
+    /// # Errors
+    /// The grid does not fit the map; the explorer is then unchanged.
+    pub fn reset(
+        &mut self,
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        start: Cell,
+    ) -> Result<(), ExtentError> {
+        self.around.map.reset(extent)?;
+        self.around.closed = ClosedCells::new();
+        self.around.position = start;
+        self.around.radius = config.radius;
+        self.around.now = 0;
+        self.config = config;
+        self.id = id;
+        self.role = Role::new(id);
+        self.others = Others::new();
+        self.far.cancel();
+        self.far_again = 0;
+        self.far_is_doubtful = false;
+        self.pending = None;
+        self.work = 0;
+        Ok(())
+    }
+
+    fn learn(&mut self, learnt: Learnt) -> Learnt {
+        if learnt.anything() {
+            self.role.used = 0;
+            self.far_is_doubtful = true;
+            self.around.closed.renew();
+        }
+        learnt
+    }
+
+    /// Goes on with the far search.
+    fn search_far(&mut self) -> Outcome {
+        if self.far.is_idle() {
+            return Outcome::Searching;
+        }
+        if self.around.closed_now().next().is_some() {
+            self.far_is_doubtful = true;
+        }
+        self.far
+            .advance(&self.around, self.config.slice, &mut self.work)
+    }
+
+    fn start_sweep(&mut self) {
+        self.far_is_doubtful = false;
+        self.far.start_sweep(self.id, &self.others, &self.around);
+    }
+
+    /// The plan, if it is still worth following.
+    fn valid_plan(&self) -> Option<&Plan> {
+        self.role.plan.as_ref().filter(|plan| {
+            plan.remaining > 0
+                && self.around.map.is_frontier(plan.goal)
+                && !self.around.is_closed(plan.goal)
+        })
+    }
+
+    /// Decides where to go: a near frontier of the own, else what the far search
+    /// found, else on with the plan, else a near frontier of others for the while.
+    fn decide(&mut self, found: Option<Candidate>) {
+        let aim = Aim {
+            goal: self.role.plan.map(|plan| plan.goal),
+            hysteresis: i32::from(self.config.hysteresis),
+        };
+        let (now, id) = (self.around.now, self.id);
+        let in_view = self.near.load(&self.around, &mut self.work);
+        let mine = if in_view {
+            let others = self.others.iter().flat_map(|other| {
+                let lower = other.id < id;
+                [Some(other.position), other.goal]
+                    .into_iter()
+                    .flatten()
+                    .map(move |cell| (cell, lower))
+            });
+            self.near.best(&self.around, &aim, others, &mut self.work)
+        } else {
+            None
+        };
+        if let Some(candidate) = mine {
+            self.far.cancel();
+            self.adopt_plan(candidate);
+        } else if let Some(candidate) = found {
+            self.far_again = now.saturating_add(self.config.far_pause);
+            self.adopt_plan(candidate);
+        } else if let Some(plan) = self.role.plan {
+            self.role.since = 0;
+            if self.far.is_idle() {
+                if plan.path.is_empty() {
+                    self.far_is_doubtful = false;
+                    self.far.start_route(plan.goal);
+                } else if now >= self.far_again {
+                    self.start_sweep();
+                }
+            }
+        } else {
+            if self.far.is_idle() {
+                self.start_sweep();
+            }
+            if in_view
+                && let Some(candidate) =
+                    self.near
+                        .best(&self.around, &aim, core::iter::empty(), &mut self.work)
+            {
+                self.adopt_plan(candidate);
+            }
+        }
+    }
+
+    /// The commitment rule: a longer plan than the one at hand costs a token.
+    fn adopt_plan(&mut self, candidate: Candidate) {
+        self.role.since = 0;
+        if candidate.path.is_empty() {
+            return;
+        }
+        if let Some(plan) = &self.role.plan
+            && candidate.length > plan.remaining
+        {
+            if self.role.used >= self.config.tokens {
+                return;
+            }
+            self.role.used += 1;
+        }
+        self.role.plan = Some(Plan {
+            goal: candidate.goal,
+            remaining: candidate.length,
+            path: candidate.path,
+        });
+    }
+
+    /// The far search met no frontier.
+    fn conclude(&mut self) -> Option<Stop> {
+        let frontiers = self.around.map.frontiers();
+        if !self.far_is_doubtful {
+            return Some(Stop::Enclosed { frontiers });
+        }
+        let hopeless = self
+            .around
+            .closed
+            .hopeless(self.config.patience, self.around.now);
+        hopeless.map(|at| Stop::Blocked { frontiers, at })
+    }
+
+    fn stop(&mut self, stop: Stop) -> Action {
+        self.role.plan = None;
+        self.role.stopped = Some(stop);
+        self.far.cancel();
+        Action::Stop(stop)
+    }
+
+    /// The next step of the plan, if it can be made.
+    fn next_step(&self) -> Option<Direction> {
+        let step = self.role.plan.as_ref()?.path.first()?;
+        let next = self.around.position.step(step);
+        (self.around.map.is_free(next) && !self.around.is_closed(next)).then_some(step)
+    }
+}
+
+impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
+    fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        if sighting.centre() != self.around.position {
+            // Carried elsewhere: the way starts somewhere else now.
+            self.around.position = sighting.centre();
+            self.role.plan = None;
+        }
+        let learnt = self.around.map.observe(sighting);
+        self.around.map.visit(self.around.position);
+        self.learn(learnt)
+    }
+
+    fn tick(&mut self) -> Action {
+        self.around.now = self.around.now.saturating_add(1);
+        self.work = 0;
+        self.pending = None;
+        if let Some(stop) = self.role.stopped {
+            return Action::Stop(stop);
+        }
+        if self.around.map.frontiers() == 0 {
+            // Nothing seen yet is not the same as nothing left.
+            if self.around.map.is_known(self.around.position) {
+                return self.stop(Stop::Complete);
+            }
+            return Action::Wait;
+        }
+        self.others.forget(self.around.now, self.config.memory);
+        let mut found = None;
+        match self.search_far() {
+            Outcome::Searching => {}
+            Outcome::Found(candidate) => found = Some(candidate),
+            Outcome::NothingLeft => {
+                if let Some(stop) = self.conclude() {
+                    return self.stop(stop);
+                }
+            }
+            Outcome::Lost => {
+                // A plan whose rest cannot be found is none.
+                if self.role.plan.is_some_and(|plan| plan.path.is_empty()) {
+                    self.role.plan = None;
+                }
+            }
+        }
+        if self.valid_plan().is_none()
+            || self.role.plan.is_some_and(|plan| !plan.path.is_empty())
+                && self.next_step().is_none()
+        {
+            self.role.plan = None;
+        }
+        let due = self.role.since >= self.config.d_max || self.next_step().is_none();
+        if due || found.is_some() {
+            self.decide(found);
+        }
+        match self.next_step() {
+            Some(step) => {
+                self.pending = Some(step);
+                Action::Move(step)
+            }
+            None => Action::Wait,
+        }
+    }
+
+    fn report(&mut self, motion: Motion) {
+        let Some(step) = self.pending.take() else {
+            return;
+        };
+        let next = self.around.position.step(step);
+        match motion {
+            Motion::Moved => {
+                self.around.position = next;
+                self.around.closed.entered(next);
+                self.role.make_step();
+            }
+            Motion::Blocked => {
+                self.around.closed.refuse(next, self.around.now);
+                self.role.plan = None;
+                self.role.used = 0;
+                self.far.cancel();
+            }
+            Motion::Held => {}
+        }
+    }
+
+    fn map(&self) -> &Map<TW, TH> {
+        &self.around.map
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            position: self.around.position,
+            goal: self.role.plan.map(|plan| plan.goal),
+            activity: if self.role.has_stopped() {
+                Activity::Stopped
+            } else {
+                Activity::Exploring
+            },
+        }
+    }
+
+    fn take_changed(&mut self) -> TileSet<TH> {
+        self.around.map.take_changed()
+    }
+
+    fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
+        let learnt = self.around.map.join_tiles(other, tiles);
+        self.learn(learnt)
+    }
+
+    fn hear(&mut self, id: RobotId, status: Status) {
+        if id != self.id {
+            self.others
+                .hear(id, status, self.around.position, self.around.now);
+        }
+    }
+
+    fn work(&self) -> u32 {
+        self.work
+    }
+
+    fn role(&self) -> Option<Role> {
+        Some(self.role)
+    }
+
+    fn adopt(&mut self, role: Role) {
+        self.role = role;
+        self.pending = None;
+        self.far.cancel();
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! The first steps of a way, two bits each.
+
+use crate::cell::Direction;
+
+/// Steps that a path holds.
+pub(crate) const CAPACITY: usize = 256;
+
+/// The next steps of a way, at most 256: the rest of a longer one is looked for
+/// when these are used up. 68 bytes.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(crate) struct Path {
+    steps: [u8; CAPACITY / 4],
+    /// Where the first step lies in the ring.
+    first: u8,
+    length: u16,
+}
+
+impl Path {
+    pub(crate) const fn new() -> Self {
+        Self {
+            steps: [0; CAPACITY / 4],
+            first: 0,
+            length: 0,
+        }
+    }
+
+    pub(crate) const fn len(&self) -> u32 {
+        self.length as u32
+    }
+
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.length == 0
+    }
+
+    fn set(&mut self, place: u8, step: Direction) {
+        let shift = (place & 3) * 2;
+        if let Some(byte) = self.steps.get_mut(usize::from(place >> 2)) {
+            *byte = *byte & !(3 << shift) | (step as u8) << shift;
+        }
+    }
+
+    /// Puts a step before the first; a full path loses its last step.
+    pub(crate) fn push_front(&mut self, step: Direction) {
+        self.first = self.first.wrapping_sub(1);
+        self.set(self.first, step);
+        if usize::from(self.length) < CAPACITY {
+            self.length += 1;
+        }
+    }
+
+    /// Puts a step after the last; a full path stays as it is and says so.
+    pub(crate) fn push_back(&mut self, step: Direction) -> bool {
+        let room = usize::from(self.length) < CAPACITY;
+        if room {
+            self.set(self.first.wrapping_add(self.length as u8), step);
+            self.length += 1;
+        }
+        room
+    }
+
+    pub(crate) fn first(&self) -> Option<Direction> {
+        let byte = self.steps.get(usize::from(self.first >> 2))?;
+        (self.length > 0).then(|| Direction::from_index(byte >> ((self.first & 3) * 2)))
+    }
+
+    pub(crate) fn pop_front(&mut self) -> Option<Direction> {
+        let step = self.first()?;
+        self.first = self.first.wrapping_add(1);
+        self.length -= 1;
+        Some(step)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+    use std::vec::Vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_path_is_a_queue_that_forgets_its_end(
+            operations in proptest::collection::vec((0u8..3, 0u8..4), 0..900),
+        ) {
+            let mut path = Path::new();
+            let mut oracle = VecDeque::new();
+            for (operation, step) in operations {
+                let step = Direction::from_index(step);
+                match operation {
+                    0 => {
+                        path.push_front(step);
+                        oracle.push_front(step);
+                        oracle.truncate(CAPACITY);
+                    }
+                    1 => {
+                        let room = oracle.len() < CAPACITY;
+                        prop_assert_eq!(path.push_back(step), room);
+                        if room {
+                            oracle.push_back(step);
+                        }
+                    }
+                    _ => prop_assert_eq!(path.pop_front(), oracle.pop_front()),
+                }
+                prop_assert_eq!(path.len() as usize, oracle.len());
+            }
+            let rest: Vec<_> = core::iter::from_fn(|| path.pop_front()).collect();
+            prop_assert_eq!(rest, Vec::from(oracle));
+        }
+    }
+}

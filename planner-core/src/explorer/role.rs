@@ -1,0 +1,99 @@
+//! Robots that may not share a cell: roles walk, bodies stay.
+//!
+//! A role is what a robot is about to do, apart from its body, its map and its
+//! radio. Where two bodies are in each other's way, the roles pass through each
+//! other by an exchange of bodies.
+
+use super::path::Path;
+use crate::cell::Cell;
+use crate::planner::{RobotId, Stop};
+
+/// Where a role is going, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Plan {
+    pub(crate) goal: Cell,
+    /// Steps to the goal at most.
+    pub(crate) remaining: u32,
+    /// The first of them.
+    pub(crate) path: Path,
+}
+
+/// What a robot is about to do. Robot `k` starts with role `k`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Role {
+    pub(crate) rank: RobotId,
+    pub(crate) plan: Option<Plan>,
+    /// Steps since the last decision.
+    pub(crate) since: u8,
+    /// Plans that were made longer since the role last learnt anything.
+    pub(crate) used: u8,
+    pub(crate) stopped: Option<Stop>,
+}
+
+impl Role {
+    pub(crate) const fn new(rank: RobotId) -> Self {
+        Self {
+            rank,
+            plan: None,
+            since: 0,
+            used: 0,
+            stopped: None,
+        }
+    }
+
+    /// Names the role, and says whom it gives way to: to every lower one.
+    pub const fn rank(&self) -> RobotId {
+        self.rank
+    }
+
+    /// Whether the role has stopped.
+    pub const fn has_stopped(&self) -> bool {
+        self.stopped.is_some()
+    }
+
+    /// The cell that the role goes to next from `here`.
+    pub fn next_cell(&self, here: Cell) -> Option<Cell> {
+        let plan = self.plan.as_ref().filter(|_| self.stopped.is_none())?;
+        Some(here.step(plan.path.first()?))
+    }
+
+    pub(crate) fn make_step(&mut self) {
+        if let Some(plan) = &mut self.plan {
+            plan.path.pop_front();
+            plan.remaining = plan.remaining.saturating_sub(1);
+        }
+        self.since = self.since.saturating_add(1);
+    }
+
+    fn is_pushed_back(&mut self, from: Cell, to: Cell) {
+        if let (Some(plan), Some(way_back)) = (&mut self.plan, to.direction_to(from)) {
+            plan.path.push_front(way_back);
+            plan.remaining = plan.remaining.saturating_add(1);
+        }
+    }
+}
+
+/// What comes of it when the next cell of role `mine`, whose body stands on
+/// `here`, is held by the body of role `theirs` on `there`: the two roles for
+/// these two bodies, in this order, or `None` if `mine` waits.
+///
+/// 1. Head-on: exchange, both have made their step.
+/// 2. The other is passive, or gives way: exchange; it gets its cell put in front
+///    of its path.
+/// 3. Else wait: no new plan, nothing is used up.
+///
+/// The bodies then join each other's maps, and neither role acts again in this tick.
+pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
+    let (mut mine, mut theirs) = (*mine, *theirs);
+    let head_on = theirs.next_cell(there) == Some(here);
+    let passive = theirs.next_cell(there).is_none();
+    if head_on {
+        theirs.make_step();
+    } else if passive || mine.rank < theirs.rank {
+        theirs.is_pushed_back(there, here);
+    } else {
+        return None;
+    }
+    mine.make_step();
+    Some((theirs, mine))
+}

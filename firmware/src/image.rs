@@ -4,13 +4,14 @@ use core::fmt::{self, Write as _};
 
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hio;
-use firmware::{Ending, Exploration, Walker, World, end, explore, stack};
-use planner_core::Planner;
+use firmware::{Ending, Exploration, World, end, explore, stack};
+use planner_core::explorer::{Config, Explorer};
+use planner_core::{Planner, RobotId};
 use static_cell::ConstStaticCell;
 
 /// The planner of a map of 128×128 cells, whatever the size of the built-in one:
 /// the report then tells what the largest map takes.
-type Robot = Walker<16, 16>;
+type Robot = Explorer<16, 16>;
 
 /// The robot's whole memory: all zero, so that it lies in `.bss` and is never
 /// copied through the stack.
@@ -32,7 +33,12 @@ fn main() -> ! {
 fn run() -> Result<Ending, fmt::Error> {
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
     let robot = ROBOT.take();
-    if let Err(error) = robot.reset(WORLD.extent(), WORLD.start()) {
+    if let Err(error) = robot.reset(
+        Config::new(RANGE),
+        RobotId(0),
+        WORLD.extent(),
+        WORLD.start(),
+    ) {
         writeln!(out, "error: {error}")?;
         return Ok(Ending::Failure);
     }

@@ -11,15 +11,12 @@ mod explore;
 #[cfg(target_os = "none")]
 pub mod stack;
 #[cfg(target_os = "none")]
-mod walker;
-#[cfg(target_os = "none")]
 mod world;
 
 #[cfg(target_os = "none")]
 pub use {
     end::{Ending, end},
     explore::{Exploration, explore},
-    walker::Walker,
     world::World,
 };
 

@@ -2,29 +2,50 @@
 
 use core::hint::black_box;
 
+use planner_core::explorer::{Config, Explorer};
 use planner_core::sight::{Beam, Pose, RangeScan};
-use planner_core::{Cell, Extent, Map};
+use planner_core::{Activity, Cell, Extent, Motion, Planner, RobotId, Sighting, Status};
 use static_cell::ConstStaticCell;
 
-static MAPS: ConstStaticCell<[Map<4, 4>; 2]> = ConstStaticCell::new([Map::vacant(), Map::vacant()]);
+static ROBOTS: ConstStaticCell<[Explorer<16, 16>; 2]> =
+    ConstStaticCell::new([Explorer::vacant(), Explorer::vacant()]);
 
 /// Calls them all.
 pub(crate) fn call_all() {
-    let Some([map, other]) = MAPS.try_take() else {
+    let Some([robot, other]) = ROBOTS.try_take() else {
         return;
     };
-    for map in [&mut *map, &mut *other] {
-        let _ = black_box(map.reset(black_box(Extent::new(9, 9))));
-        scan(map);
-        map.visit(cell());
+    for robot in [&mut *robot, &mut *other] {
+        let extent = black_box(Extent::new(9, 9));
+        let config = black_box(Config::new(5));
+        let _ = black_box(robot.reset(config, id(), extent, cell()));
+        drive(robot);
     }
-    black_box(map.join(other));
+    drive(robot);
     let changed = other.take_changed();
-    black_box(map.join_tiles(other, &changed));
+    black_box(robot.join(other.map(), &changed));
+    let mut map = robot.map().clone();
+    black_box(map.join(other.map()));
     black_box((map.is_frontier(cell()), map.is_free(cell())));
 }
 
-fn scan(map: &mut Map<4, 4>) {
+/// The verbs of [`Planner`].
+fn drive<const TW: usize, const TH: usize>(robot: &mut impl Planner<TW, TH>) {
+    if let Some(sighting) = scan() {
+        black_box(robot.observe(&sighting));
+    }
+    let status = Status {
+        position: cell(),
+        goal: black_box(Some(cell())),
+        activity: black_box(Activity::Exploring),
+    };
+    robot.hear(id(), status);
+    black_box(robot.tick());
+    robot.report(black_box(Motion::Moved));
+    black_box((robot.status(), robot.work()));
+}
+
+fn scan() -> Option<Sighting> {
     let beams = black_box([Beam {
         bearing: 0.0,
         range: 1.0,
@@ -38,11 +59,13 @@ fn scan(map: &mut Map<4, 4>) {
         max_range: black_box(4.0),
         beams: &beams,
     };
-    if let Ok(sighting) = scan.sighting() {
-        black_box(map.observe(&sighting));
-    }
+    scan.sighting().ok()
 }
 
 fn cell() -> Cell {
     black_box(Cell::new(1, 1))
+}
+
+fn id() -> RobotId {
+    black_box(RobotId(1))
 }

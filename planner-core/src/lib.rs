@@ -10,6 +10,7 @@ pub mod explorer;
 pub mod map;
 mod math;
 mod planner;
+pub mod radio;
 pub mod sight;
 
 pub use cell::{Cell, Direction, Extent};

@@ -5,6 +5,7 @@ use core::fmt;
 use crate::cell::{Cell, Direction};
 use crate::explorer::Role;
 use crate::map::{Learnt, Map, TileSet};
+use crate::radio::{FrameError, Heard, MAX_LEN};
 use crate::sight::Sighting;
 
 /// Names a robot. Lower ids win ties.
@@ -142,13 +143,25 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Says how the step of the last [`Action::Move`] went.
     fn report(&mut self, motion: Motion);
 
+    /// Writes the next frame for the others and returns its length, or `None` if
+    /// there is nothing to send or the budget of bytes is used up. May be called
+    /// until it returns `None`.
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
+
+    /// Takes in a frame of another robot, at any time.
+    ///
+    /// # Errors
+    /// The frame says nothing to this robot; nothing has changed then.
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError>;
+
     /// What the robot knows.
     fn map(&self) -> &Map<TW, TH>;
 
     /// What the robot would tell the others about itself.
     fn status(&self) -> Status;
 
-    /// The tiles of the map that changed since the last call.
+    /// The tiles of the map that changed since the last call. For media that
+    /// carry whole maps; what is taken here is not transmitted first any more.
     fn take_changed(&mut self) -> TileSet<TH>;
 
     /// Joins the given tiles of another robot's map into the own one.

@@ -83,9 +83,9 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         self.seeds.clear();
         self.own_label = 0;
         let others = others
-            .iter()
-            .filter(|other| around.map.is_free(other.position))
-            .map(|other| (other.id, other.position));
+            .exploring()
+            .map(|other| (other.id, other.status.position))
+            .filter(|&(_, position)| around.map.is_free(position));
         let mut own = Some((id, around.position));
         for (other, position) in others {
             if other > id

@@ -39,12 +39,12 @@ use window::{Aim, Candidate, NearSearch};
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileSet};
 use crate::planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
 use crate::sight::Sighting;
 
 /// How an explorer decides. One configuration serves a whole fleet; none of it
 /// depends on the map's size or the number of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Config {
     /// Perception radius of the robots, in cells: how far around a frontier cell
     /// others are taken to look when they have got there.
@@ -63,6 +63,8 @@ pub struct Config {
     pub memory: u32,
     /// Refusals after which a cell is not waited for any more, if nothing else is left.
     pub patience: u8,
+    /// How the radio is used.
+    pub link: LinkConfig,
 }
 
 impl Config {
@@ -77,6 +79,7 @@ impl Config {
             far_pause: 8,
             memory: 256,
             patience: 8,
+            link: LinkConfig::new(),
         }
     }
 
@@ -95,6 +98,7 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     around: Surroundings<TW, TH>,
     role: Role,
     others: Others,
+    link: Link<TH>,
     near: NearSearch,
     far: FarSearch<TW, TH>,
     /// No new far search before this tick while there is a plan.
@@ -120,6 +124,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 far_pause: 0,
                 memory: 0,
                 patience: 0,
+                link: LinkConfig::vacant(),
             },
             id: RobotId(0),
             around: Surroundings {
@@ -131,6 +136,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             },
             role: Role::new(RobotId(0)),
             others: Others::new(),
+            link: Link::vacant(),
             near: NearSearch::new(),
             far: FarSearch::new(),
             far_again: 0,
@@ -175,6 +181,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.id = id;
         self.role = Role::new(id);
         self.others = Others::new();
+        self.link.reset(config.link, id, extent);
         self.far.cancel();
         self.far_again = 0;
         self.far_is_doubtful = false;
@@ -228,9 +235,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let (now, id) = (self.around.now, self.id);
         let in_view = self.near.load(&self.around, &mut self.work);
         let mine = if in_view {
-            let others = self.others.iter().flat_map(|other| {
+            let others = self.others.exploring().flat_map(|other| {
                 let lower = other.id < id;
-                [Some(other.position), other.goal]
+                [Some(other.status.position), other.status.goal]
                     .into_iter()
                     .flatten()
                     .map(move |cell| (cell, lower))
@@ -327,11 +334,13 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         let learnt = self.around.map.observe(sighting);
         self.around.map.visit(self.around.position);
+        self.link.announce(&self.around.map.take_changed());
         self.learn(learnt)
     }
 
     fn tick(&mut self) -> Action {
         self.around.now = self.around.now.saturating_add(1);
+        self.link.tick();
         self.work = 0;
         self.pending = None;
         if let Some(stop) = self.role.stopped {
@@ -417,8 +426,32 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
     }
 
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let status = self.status();
+        self.link.transmit(&self.around.map, status, buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+        let frame = self.link.receive(bytes, self.around.map.extent())?;
+        let mut learnt = Learnt::default();
+        for record in &frame.tiles {
+            learnt += self.around.map.join_tile(record.at, record.tile);
+        }
+        // What others told goes out again in turn, not at once.
+        self.around.map.take_changed();
+        let (own, now) = (self.around.position, self.around.now);
+        self.others
+            .hear(frame.sender, frame.status, Some(frame.sequence), own, now);
+        Ok(Heard {
+            from: frame.sender,
+            learnt: self.learn(learnt),
+        })
+    }
+
     fn take_changed(&mut self) -> TileSet<TH> {
-        self.around.map.take_changed()
+        let mut changed = self.around.map.take_changed();
+        changed.extend(&self.link.take_announced());
+        changed
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
@@ -429,7 +462,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn hear(&mut self, id: RobotId, status: Status) {
         if id != self.id {
             self.others
-                .hear(id, status, self.around.position, self.around.now);
+                .hear(id, status, None, self.around.position, self.around.now);
         }
     }
 

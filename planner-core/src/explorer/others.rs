@@ -12,12 +12,19 @@ pub const MAX_OTHERS: usize = 15;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Other {
     pub(crate) id: RobotId,
-    pub(crate) position: Cell,
-    pub(crate) goal: Option<Cell>,
+    pub(crate) status: Status,
+    /// Number of the last frame.
+    sequence: Option<u16>,
     heard_at: u32,
 }
 
-/// The exploring robots heard of lately, by id.
+impl Other {
+    fn has_stopped(&self) -> bool {
+        self.status.activity == Activity::Stopped
+    }
+}
+
+/// The robots heard of lately, by id.
 #[derive(Debug)]
 pub(crate) struct Others {
     list: Vec<Other, MAX_OTHERS>,
@@ -28,38 +35,60 @@ impl Others {
         Self { list: Vec::new() }
     }
 
-    /// Takes in a status. A robot that has stopped explores nothing any more: it
-    /// is forgotten. Work: the list once.
-    pub(crate) fn hear(&mut self, id: RobotId, status: Status, own: Cell, now: u32) {
-        self.list.retain(|other| other.id != id);
-        if status.activity == Activity::Stopped {
-            return;
-        }
+    /// Takes in a status. One from a frame is ignored if it is not newer than the
+    /// last of its sender: repeated, late or replayed. Work: the list once.
+    pub(crate) fn hear(
+        &mut self,
+        id: RobotId,
+        status: Status,
+        sequence: Option<u16>,
+        own: Cell,
+        now: u32,
+    ) {
         let heard = Other {
             id,
-            position: status.position,
-            goal: status.goal,
+            status,
+            sequence,
             heard_at: now,
         };
-        if self.list.is_full() {
-            let farthest = self
-                .list
-                .iter()
-                .enumerate()
-                .max_by_key(|(_, other)| other.position.distance_squared(own));
-            match farthest {
-                Some((index, other))
-                    if heard.position.distance_squared(own)
-                        < other.position.distance_squared(own) =>
-                {
-                    self.list.remove(index);
-                }
-                _ => return,
+        if let Some(known) = self.list.iter_mut().find(|other| other.id == id) {
+            let is_newer = match (sequence, known.sequence) {
+                // In the half of the numbers that lies ahead.
+                (Some(new), Some(last)) => (new.wrapping_sub(last) as i16) > 0,
+                _ => true,
+            };
+            if is_newer {
+                *known = heard;
             }
+            return;
+        }
+        if self.list.is_full() && !self.make_room(&heard, own) {
+            return;
         }
         // There is room now; by id, so that ties fall the same way for everybody.
         let place = self.list.iter().take_while(|other| other.id < id).count();
         let _ = self.list.insert(place, heard);
+    }
+
+    /// Forgets a robot that has stopped, or else the farthest, if it is farther
+    /// than the one heard.
+    fn make_room(&mut self, heard: &Other, own: Cell) -> bool {
+        let rank = |other: &Other| {
+            let distance = other.status.position.distance_squared(own);
+            (other.has_stopped(), distance)
+        };
+        let least = self
+            .list
+            .iter()
+            .enumerate()
+            .max_by_key(|(_, other)| rank(other));
+        match least {
+            Some((index, other)) if rank(heard) < rank(other) => {
+                self.list.remove(index);
+                true
+            }
+            _ => false,
+        }
     }
 
     /// Forgets whom nothing was heard of for more than `memory` ticks.
@@ -68,7 +97,8 @@ impl Others {
             .retain(|other| now.saturating_sub(other.heard_at) <= memory);
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &Other> {
-        self.list.iter()
+    /// Those that still explore, by id.
+    pub(crate) fn exploring(&self) -> impl Iterator<Item = &Other> {
+        self.list.iter().filter(|other| !other.has_stopped())
     }
 }

@@ -58,8 +58,10 @@ impl Learnt {
     pub const fn anything(self) -> bool {
         self.cells > 0 || self.closed > 0
     }
+}
 
-    fn add(&mut self, other: Self) {
+impl core::ops::AddAssign for Learnt {
+    fn add_assign(&mut self, other: Self) {
         self.cells += other.cells;
         self.closed += other.closed;
     }
@@ -187,6 +189,17 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             .unwrap_or(Tile::OUTSIDE)
     }
 
+    /// One tile without the cells beyond the extent, as robots tell each other.
+    pub fn tile_inside(&self, at: TileIndex) -> Tile {
+        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
+        let tile = self.tile(at);
+        Tile {
+            known: tile.known & inside,
+            obstacle: tile.obstacle & inside,
+            visited: tile.visited & inside,
+        }
+    }
+
     fn neighbour(&self, at: TileIndex, direction: Direction) -> Tile {
         at.neighbour(direction)
             .map_or(Tile::OUTSIDE, |next| self.tile(next))
@@ -270,14 +283,14 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
                     let at = TileIndex { x, y };
                     let (free, blocked) = sighting.tile(at);
                     if free | blocked != 0 {
-                        learnt.add(self.join_tile(
+                        learnt += self.join_tile(
                             at,
                             Tile {
                                 known: free | blocked,
                                 obstacle: blocked,
                                 visited: 0,
                             },
-                        ));
+                        );
                     }
                 }
             }
@@ -343,7 +356,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         if self.extent == other.extent {
             for (row, y) in other.tiles.iter().zip(0u8..) {
                 for (tile, x) in row.iter().zip(0u8..) {
-                    learnt.add(self.join_tile(TileIndex { x, y }, *tile));
+                    learnt += self.join_tile(TileIndex { x, y }, *tile);
                 }
             }
         }
@@ -355,7 +368,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         let mut learnt = Learnt::default();
         if self.extent == other.extent {
             for at in tiles.iter() {
-                learnt.add(self.join_tile(at, other.tile(at)));
+                learnt += self.join_tile(at, other.tile(at));
             }
         }
         learnt
@@ -368,7 +381,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 }
 
 /// The cells of tile `(x, y)` that lie within the extent.
-const fn inside_mask(extent: Extent, x: usize, y: usize) -> u64 {
+pub(crate) const fn inside_mask(extent: Extent, x: usize, y: usize) -> u64 {
     let columns = (extent.width as usize).saturating_sub(x * TILE);
     let rows = (extent.height as usize).saturating_sub(y * TILE);
     let row: u64 = if columns >= TILE {

@@ -105,9 +105,11 @@ proptest! {
                 if EXTENT.contains(cell) && at.x < 4 && at.y < 3 {
                     let i = index(cell);
                     let known = tile.known >> bit & 1 == 1;
-                    naive.known[i] |= known;
-                    naive.obstacle[i] |= known && tile.obstacle >> bit & 1 == 1;
-                    naive.visited[i] |= tile.visited >> bit & 1 == 1;
+                    let obstacle = tile.obstacle >> bit & 1 == 1;
+                    let visited = tile.visited >> bit & 1 == 1;
+                    naive.known[i] |= known | obstacle | visited;
+                    naive.obstacle[i] |= obstacle;
+                    naive.visited[i] = (naive.visited[i] | visited) & !naive.obstacle[i];
                 }
             }
             let cells = (0..naive.known.len()).filter(|&i| naive.known[i] && !before.known[i]);

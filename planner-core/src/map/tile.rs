@@ -12,16 +12,17 @@ const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
 /// The eastern column of a tile.
 const EAST_COLUMN: u64 = WEST_COLUMN << 7;
 
-/// What is known of 8×8 cells. Merging two is a bitwise OR, so it is
-/// commutative, associative, idempotent, and only ever adds.
+/// What is known of 8×8 cells. A cell is unknown, free, visited or an obstacle, in
+/// this order, and of two opinions the later in the order wins: merging is a
+/// maximum, hence commutative, associative, idempotent, and it only ever adds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tile {
     /// Cells seen by anybody.
     pub known: u64,
-    /// Cells seen blocked by anybody; known ones only. An obstacle wins over free.
+    /// Cells seen blocked by anybody.
     pub obstacle: u64,
-    /// Cells that anybody has stood on.
+    /// Cells that anybody has stood on and nobody has seen blocked.
     pub visited: u64,
 }
 
@@ -45,13 +46,16 @@ impl Tile {
         self.known & !self.obstacle
     }
 
-    /// The least tile that holds what either holds.
+    /// The later opinion of the two for every cell. What is visited or an
+    /// obstacle counts as known, and an obstacle not as visited.
     #[must_use]
     pub const fn joined(self, other: Self) -> Self {
+        let obstacle = self.obstacle | other.obstacle;
+        let visited = (self.visited | other.visited) & !obstacle;
         Self {
-            known: self.known | other.known,
-            obstacle: self.obstacle | (other.obstacle & other.known),
-            visited: self.visited | other.visited,
+            known: self.known | other.known | visited | obstacle,
+            obstacle,
+            visited,
         }
     }
 }

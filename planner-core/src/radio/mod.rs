@@ -1,0 +1,13 @@
+//! What robots tell each other, in frames of at most [`MAX_LEN`] bytes.
+//!
+//! A frame stands alone: it may be lost, repeated, late, reordered, cut short,
+//! corrupted or forged. Its tiles join into the map, so any order and any
+//! repetition of the same frames gives the same map; what it says of the sender is
+//! a hint with a sequence number. `docs/wire-format.md` has the byte tables.
+
+mod frame;
+mod link;
+mod outbox;
+
+pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
+pub use link::{GridId, Heard, Key, Link, LinkConfig};

@@ -39,13 +39,13 @@ const CHECKS: &[Check] = &[
         },
     },
     Check {
-        name: "clippy-defmt",
-        title: "nor with planner-core's feature defmt",
+        name: "clippy-features",
+        title: "nor with every feature of planner-core",
         run: || {
             cargo([
                 "clippy",
                 "-p=planner-core",
-                "--features=defmt",
+                "--all-features",
                 "--",
                 "-Dwarnings",
             ])
@@ -92,13 +92,22 @@ const CHECKS: &[Check] = &[
         },
     },
     Check {
+        name: "test-keyed",
+        title: "planner-core's tests with signed frames",
+        run: || {
+            cargo(["test", "-p=planner-core", "--features=keyed"])
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
         name: "commands",
         title: "the commands in the documents exist",
         run: documents::check,
     },
     Check {
         name: "targets",
-        title: "planner-core builds for every chip, with and without defmt",
+        title: "planner-core builds for every chip, with and without its features",
         run: core_builds_for_chips,
     },
     Check {
@@ -139,7 +148,7 @@ pub(crate) fn named(name: &str) -> Result<&'static Check, String> {
 /// Prints the names of all checks.
 pub(crate) fn list() {
     for check in CHECKS {
-        println!("{:<15} {}", check.name, check.title);
+        println!("{:<16} {}", check.name, check.title);
     }
 }
 
@@ -176,7 +185,7 @@ pub(crate) fn run(only: &[&'static Check]) -> Result<()> {
             Err(_) => ("FAILED", ""),
         };
         println!(
-            "{verdict:<6} {:>7}  {:<15} {remark}",
+            "{verdict:<6} {:>7}  {:<16} {remark}",
             seconds(*time),
             check.name
         );
@@ -209,7 +218,7 @@ fn core_builds_for_chips() -> Result<String> {
         // Built, not checked: only then are the assertions on sizes evaluated.
         let build = || cargo(["build", "--release", "-p=planner-core", "--target", chip]);
         build().run()?;
-        build().arg("--features=defmt").run()?;
+        build().arg("--all-features").run()?;
     }
     Ok(CHIPS.join(", "))
 }

@@ -140,7 +140,7 @@ pub(crate) fn has_no_panic() -> Result<String> {
                 ])
                 .args(["--example=no-panic", "--", "-Wlinker-messages"])
                 .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
-                .arg("-Clink-arg=--why-live=*panic*"),
+                .arg("-Clink-arg=--why-live=*9panicking*"),
         )
         .map(|output| eprint!("{}", output.stderr))?;
     }

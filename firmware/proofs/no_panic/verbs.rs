@@ -2,7 +2,8 @@
 
 use core::hint::black_box;
 
-use planner_core::explorer::{Config, Explorer};
+use planner_core::explorer::{Config, Explorer, exchange};
+use planner_core::radio::MAX_LEN;
 use planner_core::sight::{Beam, Pose, RangeScan};
 use planner_core::{Activity, Cell, Extent, Motion, Planner, RobotId, Sighting, Status};
 use static_cell::ConstStaticCell;
@@ -24,6 +25,12 @@ pub(crate) fn call_all() {
     drive(robot);
     let changed = other.take_changed();
     black_box(robot.join(other.map(), &changed));
+    if let (Some(mine), Some(theirs)) = (robot.role(), other.role())
+        && let Some((mine, theirs)) = exchange(&mine, cell(), &theirs, cell())
+    {
+        robot.adopt(mine);
+        other.adopt(theirs);
+    }
     let mut map = robot.map().clone();
     black_box(map.join(other.map()));
     black_box((map.is_frontier(cell()), map.is_free(cell())));
@@ -40,6 +47,10 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Planner<TW, TH>) {
         activity: black_box(Activity::Exploring),
     };
     robot.hear(id(), status);
+    let mut frame = black_box([0; MAX_LEN]);
+    black_box(robot.transmit(&mut frame));
+    let length = black_box(frame.len());
+    let _ = black_box(robot.receive(black_box(frame.get(..length).unwrap_or_default())));
     black_box(robot.tick());
     robot.report(black_box(Motion::Moved));
     black_box((robot.status(), robot.work()));

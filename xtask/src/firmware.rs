@@ -127,24 +127,38 @@ pub(crate) fn has_no_panic() -> Result<String> {
     }
     eprint!("{}", output.stderr);
     if output.stderr.contains(NO_PANIC) {
-        println!("who leads there:");
-        // Links with a handler at address 0, and asks the linker who needs it.
-        show(
-            command("cargo")
-                .args([
-                    "rustc",
-                    "--profile=firmware",
-                    "-p=firmware",
-                    "--target",
-                    TARGET,
-                ])
-                .args(["--example=no-panic", "--", "-Wlinker-messages"])
-                .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
-                .arg("-Clink-arg=--why-live=*9panicking*"),
-        )
-        .map(|output| eprint!("{}", output.stderr))?;
+        show_who_panics()?;
     }
     bail!("planner-core can panic, or its proof does not build; see the linker's messages above")
+}
+
+/// Links the proof with a handler at address 0, asks the linker who needs it, and
+/// prints the chains of callers. Inlined callers are not named; `llvm-addr2line -i`
+/// on the address of the call names them.
+fn show_who_panics() -> Result<()> {
+    let output = show(
+        cargo([
+            "rustc",
+            "--profile=firmware",
+            "-p=firmware",
+            "--target",
+            TARGET,
+        ])
+        .args(["--example=no-panic", "--", "-Wlinker-messages"])
+        .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
+        .arg("-Clink-arg=--why-live=*9panicking*"),
+    )?;
+    for line in output.stderr.lines() {
+        if let Some((before, symbol)) = line.rsplit_once(":(") {
+            let arrow = if before.contains(">>>") {
+                "  called by"
+            } else {
+                "reachable:"
+            };
+            println!("{arrow} {}", symbol.trim_end_matches(')'));
+        }
+    }
+    Ok(())
 }
 
 /// The symbol that only a panic would need.

@@ -1,2 +1,31 @@
-//! The simulator around planner-core.
-fn main() {}
+//! The command `host-sim`.
+
+mod command;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// Robot swarms that explore unknown maps, simulated tick by tick.
+#[derive(Parser)]
+#[command(name = "host-sim", version)]
+enum Command {
+    /// Let robots explore a map; leaves pictures, the trace and a summary.
+    ///
+    /// Exit status: 0 every reachable cell was seen, 1 something was left, 2
+    /// bad input.
+    Explore(command::Explore),
+    /// Write a map that is made from a seed.
+    Generate(command::Generate),
+}
+
+fn main() -> ExitCode {
+    let done = match Command::parse() {
+        Command::Explore(explore) => explore.run(),
+        Command::Generate(generate) => generate.run(),
+    };
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::from(2)
+    })
+}

@@ -1,0 +1,82 @@
+//! The output folder: all files appear in it together, or none does.
+
+use std::fs;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+/// A folder that cannot be written to.
+#[derive(Debug, Error)]
+#[error("{}: cannot be written to: {problem}; choose another folder with --out", path.display())]
+pub(super) struct FolderError {
+    path: PathBuf,
+    problem: io::Error,
+}
+
+/// Files on their way into a folder.
+pub(super) struct Folder {
+    path: PathBuf,
+    files: Vec<(NamedTempFile, &'static str)>,
+}
+
+impl Folder {
+    /// Makes the folder if need be, and makes sure that it can be written to.
+    pub(super) fn open(path: PathBuf) -> Result<Self, FolderError> {
+        match fs::create_dir_all(&path).and_then(|()| temporary(&path)) {
+            Ok(_) => Ok(Self {
+                path,
+                files: Vec::new(),
+            }),
+            Err(problem) => Err(FolderError { path, problem }),
+        }
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Prepares a file.
+    pub(super) fn write(
+        &mut self,
+        name: &'static str,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), FolderError> {
+        let filled = || {
+            let mut writer = BufWriter::new(temporary(&self.path)?);
+            fill(&mut writer)?;
+            Ok(writer.into_inner()?)
+        };
+        let file = filled().map_err(|problem| self.error(problem))?;
+        self.files.push((file, name));
+        Ok(())
+    }
+
+    /// Puts all prepared files in place.
+    pub(super) fn close(mut self) -> Result<(), FolderError> {
+        for (file, name) in std::mem::take(&mut self.files) {
+            file.persist(self.path.join(name))
+                .map_err(|failed| self.error(failed.error))?;
+        }
+        Ok(())
+    }
+
+    fn error(&self, problem: io::Error) -> FolderError {
+        FolderError {
+            path: self.path.clone(),
+            problem,
+        }
+    }
+}
+
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any other new file; the default is for its owner alone.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.prefix(".host-sim-").tempfile_in(folder)
+}

@@ -1,0 +1,15 @@
+//! The subcommands: from arguments to the library and back.
+
+mod explore;
+mod folder;
+mod generate;
+mod report;
+
+use std::error::Error;
+use std::process::ExitCode;
+
+pub(crate) use explore::Explore;
+pub(crate) use generate::Generate;
+
+/// The exit status, or what is wrong with the input.
+type Done = Result<ExitCode, Box<dyn Error>>;

@@ -1,0 +1,63 @@
+//! A summary in words.
+
+use std::path::Path;
+
+use host_sim::summary::{RobotSummary, Summary};
+
+/// Prints the summary on standard output.
+pub(super) fn print(summary: &Summary, out: &Path) {
+    let ticks =
+        |ticks: Option<u32>| ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"));
+    println!(
+        "{}: {} of {} reachable cells seen",
+        summary.map, summary.seen_cells, summary.reachable_cells
+    );
+    if summary.unreachable_cells > 0 {
+        println!(
+            "  {} more free cells cannot be reached from the start",
+            summary.unreachable_cells
+        );
+    }
+    println!("  everything seen    {}", ticks(summary.ticks_to_seen));
+    println!("  every robot done   {}", ticks(summary.ticks_to_stopped));
+    println!(
+        "  seen by several    {:.0} % of the seen cells",
+        100.0 * summary.overlap
+    );
+    println!(
+        "  most work          {} in one tick",
+        summary.max_work_per_tick
+    );
+    for (number, robot) in summary.robots.iter().enumerate() {
+        println!(
+            "  robot {number:<3} {:>6} steps, {:>6} cells known, {}",
+            robot.steps,
+            robot.cells_known,
+            state(robot)
+        );
+    }
+    println!("  trace digest       {}", summary.trace_digest);
+    println!("  files in           {}", out.display());
+}
+
+/// What an incomplete run left, and why.
+pub(super) fn left(summary: &Summary) -> String {
+    let mut text = format!(
+        "not complete: {} of {} reachable cells unseen after {} ticks",
+        summary.reachable_cells - summary.seen_cells,
+        summary.reachable_cells,
+        summary.ticks
+    );
+    for (number, robot) in summary.robots.iter().enumerate() {
+        text += &format!("\n  robot {number}: {}", state(robot));
+    }
+    text
+}
+
+fn state(robot: &RobotSummary) -> &str {
+    match &robot.stop_reason {
+        _ if !robot.alive => "died",
+        Some(reason) => reason,
+        None => "still under way",
+    }
+}

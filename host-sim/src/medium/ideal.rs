@@ -1,0 +1,154 @@
+//! The medium of the papers: whole maps, at once, without a frame.
+
+use planner_core::{Map, RobotId, Status, TileSet};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::Medium;
+use crate::fleet::Robot;
+
+/// Every living robot hands its whole map and its status to every other; all
+/// speak at the same moment, and each receiver misses each sender with the
+/// probability `loss`.
+///
+/// Only tiles that the receiver may lack are joined, which gives the same maps
+/// as joining all of them.
+pub struct Ideal<const TW: usize, const TH: usize> {
+    loss: Loss,
+    voices: Vec<Voice<TW, TH>>,
+    /// Tiles of robot `s` that robot `r` may lack, at `r · robots + s`.
+    pending: Vec<TileSet<TH>>,
+}
+
+/// What one robot says.
+struct Voice<const TW: usize, const TH: usize> {
+    id: RobotId,
+    /// `None` if it is dead.
+    status: Option<Status>,
+    /// Its map as of this exchange: what it hears meanwhile is not passed on.
+    map: Box<Map<TW, TH>>,
+    /// Tiles that it learnt from others when it last listened.
+    heard: TileSet<TH>,
+}
+
+impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
+    /// A medium that loses the share `loss` (0 to 1) of all messages, by `seed`.
+    pub fn new(loss: f64, seed: u64) -> Self {
+        Self {
+            loss: Loss::new(loss, seed),
+            voices: Vec::new(),
+            pending: Vec::new(),
+        }
+    }
+
+    fn speak(&mut self, robots: &mut [Robot<TW, TH>]) {
+        if self.voices.is_empty() {
+            self.voices = robots.iter().map(Voice::silent).collect();
+            self.pending = vec![TileSet::new(); robots.len() * robots.len()];
+        }
+        let count = robots.len();
+        for (speaker, (robot, voice)) in robots.iter_mut().zip(&mut self.voices).enumerate() {
+            voice.status = robot.alive.then(|| robot.planner.status());
+            if robot.alive {
+                let changed = robot.planner.take_changed();
+                voice.heard.extend(&changed);
+                voice.map.join_tiles(robot.planner.map(), &voice.heard);
+                for row in self.pending.chunks_exact_mut(count) {
+                    row[speaker].extend(&changed);
+                }
+            }
+        }
+    }
+
+    fn listen(&mut self, robots: &mut [Robot<TW, TH>]) {
+        let rows = self.pending.chunks_exact_mut(robots.len());
+        for (robot, row) in robots.iter_mut().zip(rows) {
+            if !robot.alive {
+                continue;
+            }
+            for (voice, pending) in self.voices.iter().zip(row) {
+                if let Some(status) = voice.status
+                    && voice.id != robot.id
+                    && !self.loss.strikes()
+                {
+                    robot.planner.join(&voice.map, pending);
+                    robot.planner.hear(voice.id, status);
+                    pending.clear();
+                }
+            }
+        }
+    }
+
+    /// What was heard has to be passed on next time, unless all know it by now.
+    fn settle(&mut self, robots: &mut [Robot<TW, TH>]) {
+        let mut heard = TileSet::new();
+        for (robot, voice) in robots.iter_mut().zip(&mut self.voices) {
+            if robot.alive {
+                voice.heard = robot.planner.take_changed();
+                heard.extend(&voice.heard);
+            }
+        }
+        let maps: Vec<&Map<TW, TH>> = robots
+            .iter()
+            .filter(|robot| robot.alive)
+            .map(|robot| robot.planner.map())
+            .collect();
+        for tile in heard.iter() {
+            if maps
+                .windows(2)
+                .all(|pair| pair[0].tile(tile) == pair[1].tile(tile))
+            {
+                continue;
+            }
+            for row in self.pending.chunks_exact_mut(robots.len()) {
+                for (voice, pending) in self.voices.iter().zip(row) {
+                    if voice.heard.contains(tile) {
+                        pending.insert(tile);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<const TW: usize, const TH: usize> Medium<TW, TH> for Ideal<TW, TH> {
+    fn exchange(&mut self, robots: &mut [Robot<TW, TH>]) {
+        self.speak(robots);
+        self.listen(robots);
+        self.settle(robots);
+    }
+}
+
+impl<const TW: usize, const TH: usize> Voice<TW, TH> {
+    fn silent(robot: &Robot<TW, TH>) -> Self {
+        let mut map = Box::new(Map::vacant());
+        map.reset(robot.planner.map().extent())
+            .expect("a map of the same size holds the same extent");
+        Self {
+            id: robot.id,
+            status: None,
+            map,
+            heard: TileSet::new(),
+        }
+    }
+}
+
+/// Seeded loss of messages.
+pub(super) struct Loss {
+    /// A message is lost if 32 random bits are below this.
+    below: u64,
+    bits: ChaCha8Rng,
+}
+
+impl Loss {
+    pub(super) fn new(share: f64, seed: u64) -> Self {
+        Self {
+            below: (share.clamp(0.0, 1.0) * 2f64.powi(32)) as u64,
+            bits: ChaCha8Rng::seed_from_u64(seed),
+        }
+    }
+
+    pub(super) fn strikes(&mut self) -> bool {
+        self.below > 0 && u64::from(self.bits.next_u32()) < self.below
+    }
+}

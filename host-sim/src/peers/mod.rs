@@ -1,0 +1,17 @@
+//! The planners that the project's own are measured against. They search the
+//! whole known map whenever they decide and keep it on the heap, which no
+//! microcontroller would; otherwise they are robots like any other: they see
+//! sightings and know of others only what they hear.
+
+mod closest;
+mod greedy;
+mod groups;
+mod minpos;
+mod peer;
+mod waves;
+
+pub use closest::Closest;
+pub use greedy::Greedy;
+pub use minpos::{MinPos, PaperMinPos, StrongMinPos};
+pub use peer::{Peer, Rule, Term};
+pub use waves::{Spot, Waves};

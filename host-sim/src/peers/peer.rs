@@ -1,0 +1,261 @@
+//! A robot that walks to the frontier that a rule assigns to it.
+
+use planner_core::map::ExtentError;
+use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+use planner_core::{
+    Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,
+    TileSet,
+};
+
+use super::waves::{Spot, Waves};
+
+/// Which frontier a robot goes to.
+pub trait Rule {
+    /// How long an assignment lasts.
+    const TERM: Term;
+
+    /// The frontier cell for the robot [`Waves::me`]. The waves are at distance
+    /// 0; its own must have reached the answer. `None` if it can reach none.
+    fn assign(&mut self, waves: &mut Waves, team: &[(RobotId, Cell)]) -> Option<Spot>;
+}
+
+/// How long an assignment lasts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Term {
+    /// Moves until the next one.
+    pub moves: u32,
+    /// Whether it also ends when its goal is no frontier any more.
+    pub until_resolved: bool,
+}
+
+impl Term {
+    /// d_max = 2 [Gauville2019 §5.1].
+    pub const PAPER: Self = Self {
+        moves: 2,
+        until_resolved: false,
+    };
+    /// A fresh decision in every tick.
+    pub const EVERY_MOVE: Self = Self {
+        moves: 1,
+        until_resolved: true,
+    };
+}
+
+/// Ticks for which a cell that could not be entered is taken for closed.
+const CLOSED_TICKS: u32 = 8;
+
+/// Blocked steps after the last new cell until the robot gives up.
+const PATIENCE: u32 = 1000;
+
+/// A planner that follows a [`Rule`].
+pub struct Peer<R, const TW: usize, const TH: usize> {
+    rule: R,
+    id: RobotId,
+    map: Box<Map<TW, TH>>,
+    link: Link<TH>,
+    position: Cell,
+    /// By id, as last heard.
+    others: Vec<Option<Status>>,
+    waves: Waves,
+    team: Vec<(RobotId, Cell)>,
+    goal: Option<Cell>,
+    /// The cells to the goal, the last one first.
+    way: Vec<Cell>,
+    /// Moves since the assignment.
+    moves: u32,
+    clock: u32,
+    /// Cells that could not be entered, and when to try them again.
+    closed: Vec<(Cell, u32)>,
+    blocked_steps: u32,
+    stopped: Option<Stop>,
+    work: u32,
+}
+
+impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
+    /// Robot `id` at `start` on a grid of `extent`.
+    ///
+    /// # Errors
+    /// A grid that a map of this size does not hold.
+    pub fn new(rule: R, id: RobotId, extent: Extent, start: Cell) -> Result<Self, ExtentError> {
+        let mut map = Box::new(Map::vacant());
+        map.reset(extent)?;
+        let mut link = Link::vacant();
+        link.reset(LinkConfig::new(), id, extent);
+        Ok(Self {
+            rule,
+            id,
+            map,
+            link,
+            position: start,
+            others: Vec::new(),
+            waves: Waves::default(),
+            team: Vec::new(),
+            goal: None,
+            way: Vec::new(),
+            moves: 0,
+            clock: 0,
+            closed: Vec::new(),
+            blocked_steps: 0,
+            stopped: None,
+            work: 0,
+        })
+    }
+
+    /// Whether the assignment holds and its next cell can be entered.
+    fn has_way(&self) -> bool {
+        let is_resolved = || !self.goal.is_some_and(|goal| self.map.is_frontier(goal));
+        let has_ended = self.moves >= R::TERM.moves || R::TERM.until_resolved && is_resolved();
+        !has_ended && self.way.last().is_some_and(|&next| self.map.is_free(next))
+    }
+
+    fn assign(&mut self) {
+        self.goal = None;
+        self.way.clear();
+        self.moves = 0;
+        if self.map.frontiers() == 0 {
+            return;
+        }
+        self.team.clear();
+        let walking = |status: &Status| status.activity != Activity::Stopped;
+        for (status, id) in self.others.iter().zip(0..=u8::MAX) {
+            if let Some(status) = status.filter(walking) {
+                self.team.push((RobotId(id), status.position));
+            }
+        }
+        let place = self.team.partition_point(|&(id, _)| id < self.id);
+        self.team.insert(place, (self.id, self.position));
+        let closed = self.closed.iter().map(|&(cell, _)| cell);
+        self.waves.start(&self.map, closed, self.id, &self.team);
+        if let Some(goal) = self.rule.assign(&mut self.waves, &self.team) {
+            self.goal = Some(self.waves.cell(goal));
+            self.waves.way(self.position, goal, &mut self.way);
+        }
+        self.work = self.waves.visits();
+    }
+
+    /// Without a way to any frontier: wait, or stop for good.
+    fn rest(&mut self) -> Action {
+        let frontiers = self.map.frontiers();
+        let stop = match self.closed.last() {
+            _ if frontiers == 0 => Stop::Complete,
+            None => Stop::Enclosed { frontiers },
+            Some(&(at, _)) if self.blocked_steps > PATIENCE => Stop::Blocked { frontiers, at },
+            Some(_) => return Action::Wait,
+        };
+        self.stopped = Some(stop);
+        Action::Stop(stop)
+    }
+
+    fn learn(&mut self, learnt: Learnt) -> Learnt {
+        if learnt.anything() {
+            self.blocked_steps = 0;
+        }
+        learnt
+    }
+}
+
+impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, TH> {
+    fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        self.position = sighting.centre();
+        self.map.visit(self.position);
+        let learnt = self.map.observe(sighting);
+        self.link.announce(&self.map.take_changed());
+        self.learn(learnt)
+    }
+
+    fn tick(&mut self) -> Action {
+        self.work = 0;
+        if let Some(stop) = self.stopped {
+            return Action::Stop(stop);
+        }
+        self.link.tick();
+        self.clock += 1;
+        let now = self.clock;
+        self.closed.retain(|&(_, until)| until > now);
+        if !self.has_way() {
+            self.assign();
+        }
+        let next = self.way.last();
+        match next.and_then(|&next| self.position.direction_to(next)) {
+            Some(direction) => Action::Move(direction),
+            None => self.rest(),
+        }
+    }
+
+    fn report(&mut self, motion: Motion) {
+        if motion == Motion::Held {
+            return;
+        }
+        let Some(next) = self.way.pop() else { return };
+        match motion {
+            Motion::Moved => {
+                self.position = next;
+                self.moves += 1;
+            }
+            Motion::Blocked => {
+                self.closed.push((next, self.clock + CLOSED_TICKS));
+                self.blocked_steps += 1;
+                self.way.clear();
+            }
+            Motion::Held => {}
+        }
+    }
+
+    fn map(&self) -> &Map<TW, TH> {
+        &self.map
+    }
+
+    fn status(&self) -> Status {
+        let activity = match self.stopped {
+            Some(_) => Activity::Stopped,
+            None => Activity::Exploring,
+        };
+        Status {
+            position: self.position,
+            goal: self.goal,
+            activity,
+        }
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let status = self.status();
+        self.link.transmit(&self.map, status, buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+        let frame = self.link.receive(bytes, self.map.extent())?;
+        let mut learnt = Learnt::default();
+        for record in &frame.tiles {
+            learnt += self.map.join_tile(record.at, record.tile);
+        }
+        self.map.take_changed();
+        self.hear(frame.sender, frame.status);
+        Ok(Heard {
+            from: frame.sender,
+            learnt: self.learn(learnt),
+        })
+    }
+
+    fn take_changed(&mut self) -> TileSet<TH> {
+        let mut changed = self.map.take_changed();
+        changed.extend(&self.link.take_announced());
+        changed
+    }
+
+    fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
+        let learnt = self.map.join_tiles(other, tiles);
+        self.learn(learnt)
+    }
+
+    fn hear(&mut self, id: RobotId, status: Status) {
+        let index = usize::from(id.0);
+        if self.others.len() <= index {
+            self.others.resize(index + 1, None);
+        }
+        self.others[index] = Some(status);
+    }
+
+    fn work(&self) -> u32 {
+        self.work
+    }
+}

@@ -1,0 +1,66 @@
+//! Every planner that a robot can run.
+
+use std::fmt;
+
+use clap::ValueEnum;
+use planner_core::explorer::{self, Explorer};
+use planner_core::map::ExtentError;
+use planner_core::{Cell, Extent, Planner, RobotId};
+use serde::{Deserialize, Serialize};
+
+use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
+
+/// Names a planner, on the command line and in traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PlannerKind {
+    /// The complete explorer with bounded work.
+    Explorer,
+    /// Each robot to the nearest frontier of its map.
+    Closest,
+    /// The robot and the frontier that are nearest to each other first, and so on.
+    Greedy,
+    /// Each robot to the frontier that the fewest others are nearer to.
+    #[value(name = "minpos")]
+    #[serde(rename = "minpos")]
+    MinPos,
+    /// The same with every frontier cell for itself, decided anew in every tick.
+    #[value(name = "minpos-strong")]
+    #[serde(rename = "minpos-strong")]
+    MinPosStrong,
+}
+
+impl PlannerKind {
+    /// The planner of robot `id`, which starts at `start` on a grid of `extent`
+    /// and sees `range` cells far.
+    ///
+    /// # Errors
+    /// A grid that a map of `TW`×`TH` tiles does not hold.
+    pub fn build<const TW: usize, const TH: usize>(
+        self,
+        id: RobotId,
+        extent: Extent,
+        start: Cell,
+        range: u8,
+    ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+        Ok(match self {
+            Self::Explorer => {
+                let mut explorer = Box::new(Explorer::vacant());
+                explorer.reset(explorer::Config::new(range), id, extent, start)?;
+                explorer
+            }
+            Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
+            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
+        })
+    }
+}
+
+/// The name used on the command line, for example `closest`.
+impl fmt::Display for PlannerKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.to_possible_value().expect("no planner is hidden");
+        f.write_str(value.get_name())
+    }
+}

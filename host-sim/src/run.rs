@@ -1,0 +1,408 @@
+//! From a scenario to what happened.
+
+use std::sync::Arc;
+
+use planner_core::{Action, Cell, Extent, Motion, Stop, sight};
+use thiserror::Error;
+
+use crate::coverage::Coverage;
+use crate::fleet::{Faults, Fleet, Robot, Rules, Violation};
+use crate::medium::Ideal;
+use crate::planners::PlannerKind;
+use crate::sensor::Sensor;
+use crate::trace::{Record, Trace};
+use crate::world::{Reachable, World};
+
+/// Everything that a run follows from. The same scenario gives the same run on
+/// every machine.
+#[derive(Clone, Debug)]
+pub struct Scenario {
+    /// What is explored.
+    pub world: Arc<World>,
+    /// Where each robot starts; as many robots as starts, 1 to 255.
+    pub starts: Vec<Cell>,
+    /// What decides in each robot.
+    pub planner: PlannerKind,
+    /// Sensor range in cells, 1 to 15.
+    pub range: u8,
+    /// Ticks between two exchanges among robots; 0: never.
+    pub sync: u32,
+    /// Share of messages lost, 0 to 1.
+    pub loss: f64,
+    /// Seed of all chance in the run.
+    pub seed: u64,
+    /// Whether a cell holds at most one robot.
+    pub solid: bool,
+    /// The run ends after this many ticks.
+    pub max_ticks: u32,
+    /// What goes wrong.
+    pub faults: Faults,
+}
+
+/// A scenario that cannot be run.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ScenarioError {
+    /// See the message.
+    #[error("{0} robots; expected 1 to 255")]
+    Robots(usize),
+    /// See the message.
+    #[error("a sensor range of {0} cells; expected 1 to {max}", max = sight::MAX_RADIUS)]
+    Range(u8),
+    /// See the message.
+    #[error("a loss of {0}; expected 0 (none) to 1 (all)")]
+    Loss(f64),
+    /// See the message.
+    #[error("robot {robot} starts at {start}, which is no free cell of the world")]
+    Start {
+        /// Index of the robot.
+        robot: usize,
+        /// Where it was to start.
+        start: Cell,
+    },
+    /// See the message.
+    #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]
+    SharedStart {
+        /// Index of the one.
+        first: usize,
+        /// Index of the other.
+        second: usize,
+        /// Where both were to start.
+        start: Cell,
+    },
+}
+
+impl Scenario {
+    /// A scenario with the defaults: sensor range 5, exchange in every tick, no
+    /// loss, shared cells, seed 0, no faults, and ticks enough for any planner
+    /// that gets anywhere.
+    pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
+        let max_ticks = default_max_ticks(&world.reachable(&starts));
+        Self {
+            world,
+            starts,
+            planner,
+            range: 5,
+            sync: 1,
+            loss: 0.0,
+            seed: 0,
+            solid: false,
+            max_ticks,
+            faults: Faults::default(),
+        }
+    }
+
+    /// Whether the scenario can be run.
+    ///
+    /// # Errors
+    /// What is out of range.
+    pub fn check(&self) -> Result<(), ScenarioError> {
+        let robots = self.starts.len();
+        if !(1..=255).contains(&robots) {
+            return Err(ScenarioError::Robots(robots));
+        }
+        if !(1..=sight::MAX_RADIUS).contains(&self.range) {
+            return Err(ScenarioError::Range(self.range));
+        }
+        if !(0.0..=1.0).contains(&self.loss) {
+            return Err(ScenarioError::Loss(self.loss));
+        }
+        for (robot, &start) in self.starts.iter().enumerate() {
+            if !self.world.is_free(start) {
+                return Err(ScenarioError::Start { robot, start });
+            }
+            if self.solid
+                && let Some(first) = self.starts[..robot].iter().position(|&cell| cell == start)
+            {
+                return Err(ScenarioError::SharedStart {
+                    first,
+                    second: robot,
+                    start,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Ticks after which a run is given up if nobody says otherwise: eight for each
+/// cell that can be reached, and a thousand. One robot that walks to every cell
+/// and back needs two.
+pub fn default_max_ticks(reachable: &Reachable) -> u32 {
+    1000 + 8 * reachable.count()
+}
+
+/// What happened in a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Ticks that were run.
+    pub ticks: u32,
+    /// Moves that anybody could have made when somebody had seen every
+    /// reachable cell; `None` if nobody ever did.
+    pub ticks_to_seen: Option<u32>,
+    /// Moves that anybody could have made when the last living robot had
+    /// stopped; `None` if the run ended before.
+    pub ticks_to_stopped: Option<u32>,
+    /// Free cells that can be reached from any start.
+    pub reachable_cells: u32,
+    /// Reachable cells that somebody has seen.
+    pub seen_cells: u32,
+    /// Reachable cells that more than one robot has seen with its own sensor.
+    pub shared_cells: u32,
+    /// Largest work of one planner in one tick.
+    pub max_work_per_tick: u32,
+    /// Reachable cells seen by somebody, tick by tick.
+    pub coverage: Vec<u32>,
+    /// Robot by robot.
+    pub robots: Vec<RobotOutcome>,
+    /// Moves into obstacles. Anything but none is a bug of a planner.
+    pub violations: Vec<Violation>,
+}
+
+/// What happened to one robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RobotOutcome {
+    /// Cells walked.
+    pub steps: u32,
+    /// Steps that something stood in the way of.
+    pub blocked_steps: u32,
+    /// Cells on its own map, obstacles included.
+    pub cells_known: u32,
+    /// Cells that it could reach and that its own map lacks.
+    pub cells_missed: u32,
+    /// Work of its planner over the run.
+    pub work: u64,
+    /// Why it stopped; `None` if it did not.
+    pub stop: Option<Stop>,
+    /// Whether it lived to the end of the run.
+    pub alive: bool,
+}
+
+impl Outcome {
+    /// Whether every reachable cell was seen by somebody, without a violation.
+    pub fn is_complete(&self) -> bool {
+        self.ticks_to_seen.is_some() && self.violations.is_empty()
+    }
+
+    /// Share of the seen cells that more than one robot saw with its own
+    /// sensor, 0 to 1.
+    pub fn overlap(&self) -> f64 {
+        f64::from(self.shared_cells) / f64::from(self.seen_cells.max(1))
+    }
+}
+
+/// A run as far as it has come.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress {
+    /// Ticks done.
+    pub ticks: u32,
+    /// Reachable cells that somebody has seen.
+    pub seen_cells: u32,
+    /// Cells that can be reached.
+    pub reachable_cells: u32,
+}
+
+/// How a scenario is run; changes nothing of what happens.
+#[derive(Default)]
+pub struct Options<'a> {
+    /// A sensor of the scenario's world and range that other runs have filled.
+    pub sensor: Option<Arc<Sensor>>,
+    /// Whether a trace is kept.
+    pub trace: bool,
+    /// Called after every tick.
+    pub progress: Option<&'a mut dyn FnMut(Progress)>,
+}
+
+/// Runs a scenario until every living robot has stopped or time is up.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn run(
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+    scenario.check()?;
+    let Extent { width, height } = scenario.world.extent();
+    Ok(match width.max(height) {
+        0..=32 => run_compiled::<4, 4>(scenario, options),
+        33..=64 => run_compiled::<8, 8>(scenario, options),
+        65..=128 => run_compiled::<16, 16>(scenario, options),
+        129..=256 => run_compiled::<32, 32>(scenario, options),
+        _ => run_compiled::<64, 64>(scenario, options),
+    })
+}
+
+/// The fleet of a scenario before its first tick, on maps of `TW`×`TH` tiles.
+///
+/// # Panics
+/// If the world does not fit maps of this size.
+pub fn fleet<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    sensor: Arc<Sensor>,
+) -> Fleet<TW, TH> {
+    let extent = scenario.world.extent();
+    let rules = Rules {
+        sync: scenario.sync,
+        solid: scenario.solid,
+        faults: scenario.faults.clone(),
+    };
+    let planners = scenario.starts.iter().zip(0..).map(|(&start, id)| {
+        let planner = scenario
+            .planner
+            .build(planner_core::RobotId(id), extent, start, scenario.range)
+            .expect("the compiled size holds the world");
+        (planner, start)
+    });
+    let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
+    Fleet::new(sensor, medium, rules, planners)
+}
+
+/// Runs a checked scenario on maps of `TW`×`TH` tiles. The result does not
+/// depend on them.
+///
+/// # Panics
+/// If the world does not fit maps of this size.
+pub fn run_compiled<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> (Outcome, Option<Trace>) {
+    let sensor = options
+        .sensor
+        .unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
+    let mut fleet = fleet::<TW, TH>(scenario, sensor.clone());
+    let mut book = Book::new(scenario, sensor, options.trace);
+    let mut progress = options.progress;
+    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() {
+        fleet.tick();
+        book.note(&fleet);
+        if let Some(progress) = &mut progress {
+            progress(book.progress());
+        }
+    }
+    book.close(scenario, &fleet)
+}
+
+/// What is written down while a run goes on.
+struct Book {
+    sensor: Arc<Sensor>,
+    reachable: Reachable,
+    coverage: Coverage,
+    looked_from: Vec<Option<Cell>>,
+    outcome: Outcome,
+    records: Option<Vec<Record>>,
+}
+
+impl Book {
+    fn new(scenario: &Scenario, sensor: Arc<Sensor>, trace: bool) -> Self {
+        let robots = scenario.starts.len();
+        let reachable = scenario.world.reachable(&scenario.starts);
+        let outcome = Outcome {
+            ticks: 0,
+            ticks_to_seen: None,
+            ticks_to_stopped: None,
+            reachable_cells: reachable.count(),
+            seen_cells: 0,
+            shared_cells: 0,
+            max_work_per_tick: 0,
+            coverage: Vec::new(),
+            robots: vec![
+                RobotOutcome {
+                    steps: 0,
+                    blocked_steps: 0,
+                    cells_known: 0,
+                    cells_missed: 0,
+                    work: 0,
+                    stop: None,
+                    alive: true,
+                };
+                robots
+            ],
+            violations: Vec::new(),
+        };
+        Self {
+            coverage: Coverage::new(&scenario.world, &reachable, robots),
+            sensor,
+            reachable,
+            looked_from: vec![None; robots],
+            outcome,
+            records: trace.then(Vec::new),
+        }
+    }
+
+    /// Takes down the last tick.
+    fn note<const TW: usize, const TH: usize>(&mut self, fleet: &Fleet<TW, TH>) {
+        let tick = fleet.ticks() - 1;
+        for (index, robot) in fleet.robots().iter().enumerate() {
+            let Some(step) = robot.step else { continue };
+            if self.looked_from[index] != Some(step.at) {
+                self.looked_from[index] = Some(step.at);
+                self.coverage.look(index, self.sensor.view(step.at));
+            }
+            let work = robot.planner.work();
+            let noted = &mut self.outcome.robots[index];
+            noted.work += u64::from(work);
+            noted.stop = match step.action {
+                Action::Stop(stop) => Some(stop),
+                Action::Move(_) | Action::Wait => None,
+            };
+            match step.motion {
+                Some(Motion::Moved) => noted.steps += 1,
+                Some(Motion::Blocked) => noted.blocked_steps += 1,
+                Some(Motion::Held) | None => {}
+            }
+            self.outcome.max_work_per_tick = self.outcome.max_work_per_tick.max(work);
+            if let Some(records) = &mut self.records {
+                records.push(Record::new(tick, robot, step));
+            }
+        }
+        let outcome = &mut self.outcome;
+        outcome.ticks = fleet.ticks();
+        outcome.seen_cells = self.coverage.seen_cells();
+        outcome.coverage.push(outcome.seen_cells);
+        if outcome.seen_cells == outcome.reachable_cells {
+            outcome.ticks_to_seen.get_or_insert(tick);
+        }
+        if fleet.has_stopped() {
+            outcome.ticks_to_stopped.get_or_insert(tick);
+        }
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            ticks: self.outcome.ticks,
+            seen_cells: self.outcome.seen_cells,
+            reachable_cells: self.outcome.reachable_cells,
+        }
+    }
+
+    fn close<const TW: usize, const TH: usize>(
+        mut self,
+        scenario: &Scenario,
+        fleet: &Fleet<TW, TH>,
+    ) -> (Outcome, Option<Trace>) {
+        self.outcome.shared_cells = self.coverage.shared_cells();
+        self.outcome.violations = fleet.violations().to_vec();
+        for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
+            let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
+            noted.alive = robot.alive;
+            noted.cells_known = robot.planner.map().known_cells();
+            noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
+        }
+        let trace = self.records.map(|records| Trace::new(scenario, records));
+        (self.outcome, trace)
+    }
+}
+
+/// Cells that `robot` could reach and does not know.
+fn missed<const TW: usize, const TH: usize>(
+    world: &World,
+    all: &Reachable,
+    robot: &Robot<TW, TH>,
+    start: Cell,
+) -> u32 {
+    let lacks = |cell: &Cell| !robot.planner.map().is_known(*cell);
+    if all.cells().any(|cell| lacks(&cell)) {
+        world.reachable(&[start]).cells().filter(lacks).count() as u32
+    } else {
+        0
+    }
+}

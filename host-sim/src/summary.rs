@@ -1,0 +1,134 @@
+//! A run in one JSON object.
+
+use planner_core::Stop;
+use serde::Serialize;
+
+use crate::planners::PlannerKind;
+use crate::run::{Outcome, RobotOutcome, Scenario};
+
+/// What a run came to, in the field names of the JSON summary.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Whether every reachable cell was seen by somebody, without a violation.
+    pub complete: bool,
+    /// See [`Outcome::ticks_to_seen`].
+    pub ticks_to_seen: Option<u32>,
+    /// See [`Outcome::ticks_to_stopped`].
+    pub ticks_to_stopped: Option<u32>,
+    /// Ticks that were run.
+    pub ticks: u32,
+    /// Free cells that can be reached from any start.
+    pub reachable_cells: u32,
+    /// Reachable cells that somebody has seen.
+    pub seen_cells: u32,
+    /// Free cells that cannot be reached.
+    pub unreachable_cells: u32,
+    /// Share of the seen cells that more than one robot saw with its own
+    /// sensor, 0 to 1.
+    pub overlap: f64,
+    /// Largest work of one planner in one tick.
+    pub max_work_per_tick: u32,
+    /// Moves into obstacles; anything but 0 is a bug of the planner.
+    pub violations: usize,
+    /// [`Trace::digest`](crate::trace::Trace::digest).
+    pub trace_digest: String,
+    /// Name of the map.
+    pub map: String,
+    /// What decided.
+    pub planner: PlannerKind,
+    /// Sensor range in cells.
+    pub range: u8,
+    /// Ticks between two exchanges; 0: never.
+    pub sync: u32,
+    /// Share of messages lost, 0 to 1.
+    pub loss: f64,
+    /// Seed of all chance in the run.
+    pub seed: u64,
+    /// Whether a cell held at most one robot.
+    pub solid: bool,
+    /// Robot by robot.
+    pub robots: Vec<RobotSummary>,
+}
+
+/// What one robot came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct RobotSummary {
+    /// Where it started.
+    pub start: (i16, i16),
+    /// Cells walked.
+    pub steps: u32,
+    /// Steps that something stood in the way of.
+    pub blocked_steps: u32,
+    /// Cells on its own map, obstacles included.
+    pub cells_known: u32,
+    /// Cells that it could reach and that its own map lacks.
+    pub cells_missed: u32,
+    /// Work of its planner over the run.
+    pub work: u64,
+    /// `complete`, `enclosed`, `blocked`, `back-at-start`, `no-trace`; `null`
+    /// if it had not stopped.
+    pub stop: Option<&'static str>,
+    /// The reason in words.
+    pub stop_reason: Option<String>,
+    /// Whether it lived to the end of the run.
+    pub alive: bool,
+}
+
+impl Summary {
+    /// The summary of a run and of the digest of its trace.
+    pub fn new(scenario: &Scenario, outcome: &Outcome, trace_digest: String) -> Self {
+        let free = scenario.world.free_cells().count() as u32;
+        Self {
+            complete: outcome.is_complete(),
+            ticks_to_seen: outcome.ticks_to_seen,
+            ticks_to_stopped: outcome.ticks_to_stopped,
+            ticks: outcome.ticks,
+            reachable_cells: outcome.reachable_cells,
+            seen_cells: outcome.seen_cells,
+            unreachable_cells: free - outcome.reachable_cells,
+            overlap: outcome.overlap(),
+            max_work_per_tick: outcome.max_work_per_tick,
+            violations: outcome.violations.len(),
+            trace_digest,
+            map: scenario.world.name().into(),
+            planner: scenario.planner,
+            range: scenario.range,
+            sync: scenario.sync,
+            loss: scenario.loss,
+            seed: scenario.seed,
+            solid: scenario.solid,
+            robots: scenario
+                .starts
+                .iter()
+                .zip(&outcome.robots)
+                .map(|(start, robot)| RobotSummary::new((start.x, start.y), robot))
+                .collect(),
+        }
+    }
+}
+
+impl RobotSummary {
+    fn new(start: (i16, i16), robot: &RobotOutcome) -> Self {
+        Self {
+            start,
+            steps: robot.steps,
+            blocked_steps: robot.blocked_steps,
+            cells_known: robot.cells_known,
+            cells_missed: robot.cells_missed,
+            work: robot.work,
+            stop: robot.stop.map(stop_name),
+            stop_reason: robot.stop.map(|stop| stop.to_string()),
+            alive: robot.alive,
+        }
+    }
+}
+
+fn stop_name(stop: Stop) -> &'static str {
+    match stop {
+        Stop::Complete => "complete",
+        Stop::Enclosed { .. } => "enclosed",
+        Stop::Blocked { .. } => "blocked",
+        Stop::BackAtStart { .. } => "back-at-start",
+        Stop::NoTrace { .. } => "no-trace",
+    }
+}

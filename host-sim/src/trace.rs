@@ -1,0 +1,156 @@
+//! The record of a run in integers: what golden tests compare, what firmware
+//! must reproduce, and what every picture is drawn from.
+//!
+//! A trace file is text. Line 1 is a JSON object, the *header*: the whole
+//! scenario with the world's rows (`#` obstacle, `.` free), the number of
+//! records and their digest. Line 2 names the columns; every further line is
+//! one record, [`COLUMNS`] as comma-separated integers. Nothing else is needed
+//! to run the scenario again or to redraw it.
+//!
+//! The digest is the first 16 hex digits of the SHA-256 of all records, each as
+//! 22 bytes, little-endian: tick `u32`, robot `u8`, x `i16`, y `i16`, action
+//! `u8`, goal x `i16`, goal y `i16`, known `u32`, work `u32`.
+
+mod file;
+
+use std::fmt::Write;
+
+use planner_core::{Action, Cell, Direction, Motion, Stop};
+use sha2::{Digest, Sha256};
+
+pub use file::TraceError;
+
+use crate::fleet::{Robot, Step};
+use crate::run::Scenario;
+
+/// The columns of a record.
+pub const COLUMNS: [&str; 9] = [
+    "tick", "robot", "x", "y", "action", "goal_x", "goal_y", "known", "work",
+];
+
+/// A scenario and all that its robots did.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// What was run.
+    pub scenario: Scenario,
+    /// One record for each living robot and tick, by tick, then by robot.
+    pub records: Vec<Record>,
+}
+
+/// What one robot did in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// Tick, from 0.
+    pub tick: u32,
+    /// Id of the robot.
+    pub robot: u8,
+    /// Where it stood, looked and decided.
+    pub at: Cell,
+    /// 0 to 3: moved east, south, west, north. 4 to 7: tried to, and was
+    /// blocked. 8: waited. 16 to 20: stopped, by the order of [`Stop`].
+    pub action: u8,
+    /// Where it was going; in the file and the digest -1, -1 for nowhere.
+    pub goal: Option<Cell>,
+    /// Cells on its map, obstacles included.
+    pub known: u32,
+    /// Work of its planner in this tick.
+    pub work: u32,
+}
+
+const WAIT: u8 = 8;
+const HELD: u8 = 12;
+const STOP: u8 = 16;
+const NOWHERE: Cell = Cell::new(-1, -1);
+
+impl Record {
+    /// What `robot` did in `tick`.
+    pub fn new<const TW: usize, const TH: usize>(
+        tick: u32,
+        robot: &Robot<TW, TH>,
+        step: Step,
+    ) -> Self {
+        let action = match step.action {
+            Action::Move(direction) => match step.motion {
+                Some(Motion::Moved) => direction as u8,
+                Some(Motion::Blocked) | None => 4 + direction as u8,
+                Some(Motion::Held) => HELD + direction as u8,
+            },
+            Action::Wait => WAIT,
+            Action::Stop(stop) => {
+                STOP + match stop {
+                    Stop::Complete => 0,
+                    Stop::Enclosed { .. } => 1,
+                    Stop::Blocked { .. } => 2,
+                    Stop::BackAtStart { .. } => 3,
+                    Stop::NoTrace { .. } => 4,
+                }
+            }
+        };
+        Self {
+            tick,
+            robot: robot.id.0,
+            at: step.at,
+            action,
+            goal: robot.planner.status().goal,
+            known: robot.planner.map().known_cells(),
+            work: robot.planner.work(),
+        }
+    }
+
+    /// Where the robot was after the tick.
+    pub fn after(&self) -> Cell {
+        match self.action {
+            0..4 => self.at.step(Direction::from_index(self.action)),
+            _ => self.at,
+        }
+    }
+
+    /// Whether the robot had stopped.
+    pub fn has_stopped(&self) -> bool {
+        self.action >= STOP
+    }
+
+    fn bytes(&self) -> [u8; 22] {
+        let goal = self.goal.unwrap_or(NOWHERE);
+        let mut bytes = [0; 22];
+        bytes[0..4].copy_from_slice(&self.tick.to_le_bytes());
+        bytes[4] = self.robot;
+        bytes[5..7].copy_from_slice(&self.at.x.to_le_bytes());
+        bytes[7..9].copy_from_slice(&self.at.y.to_le_bytes());
+        bytes[9] = self.action;
+        bytes[10..12].copy_from_slice(&goal.x.to_le_bytes());
+        bytes[12..14].copy_from_slice(&goal.y.to_le_bytes());
+        bytes[14..18].copy_from_slice(&self.known.to_le_bytes());
+        bytes[18..22].copy_from_slice(&self.work.to_le_bytes());
+        bytes
+    }
+}
+
+impl Trace {
+    pub(crate) fn new(scenario: &Scenario, records: Vec<Record>) -> Self {
+        Self {
+            scenario: scenario.clone(),
+            records,
+        }
+    }
+
+    /// 16 hex digits that differ if any record does.
+    pub fn digest(&self) -> String {
+        let mut sha = Sha256::new();
+        for record in &self.records {
+            sha.update(record.bytes());
+        }
+        sha.finalize()
+            .iter()
+            .take(8)
+            .fold(String::new(), |mut digits, byte| {
+                write!(digits, "{byte:02x}").expect("a String takes everything");
+                digits
+            })
+    }
+
+    /// Number of ticks that were run.
+    pub fn ticks(&self) -> u32 {
+        self.records.last().map_or(0, |record| record.tick + 1)
+    }
+}

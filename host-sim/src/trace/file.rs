@@ -1,0 +1,307 @@
+//! Traces as files.
+
+use std::io::{self, BufRead, Write};
+use std::sync::Arc;
+
+use planner_core::{Cell, Extent, RobotId};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::{COLUMNS, NOWHERE, Record, Trace};
+use crate::fleet::{Closure, Death, Faults};
+use crate::planners::PlannerKind;
+use crate::run::{Scenario, ScenarioError};
+use crate::world::{World, WorldError};
+
+const FORMAT: &str = "host-sim trace";
+const VERSION: u32 = 1;
+
+/// A trace that cannot be read.
+#[derive(Debug, Error)]
+pub enum TraceError {
+    /// See the message.
+    #[error("cannot be read: {0}")]
+    Io(#[from] io::Error),
+    /// See the message.
+    #[error("line 1: expected the JSON header of a trace: {0}; is this a trace file?")]
+    Header(serde_json::Error),
+    /// See the message.
+    #[error("is `{format}` version {version}; this program reads `{FORMAT}` version {VERSION}")]
+    Format {
+        /// What the header says.
+        format: String,
+        /// What the header says.
+        version: u32,
+    },
+    /// See the message.
+    #[error("the header's world: {0}")]
+    World(#[from] WorldError),
+    /// See the message.
+    #[error("the header's world: row {row} has {found} cells, the first has {expected}")]
+    Ragged {
+        /// Which row, from 1.
+        row: usize,
+        /// Length of the first row.
+        expected: usize,
+        /// Length of this one.
+        found: usize,
+    },
+    /// See the message.
+    #[error("the header's scenario: {0}")]
+    Scenario(#[from] ScenarioError),
+    /// See the message.
+    #[error("line {line}: expected {expected}, found {found:?}")]
+    Line {
+        /// Which line, from 1.
+        line: usize,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// See the message.
+    #[error("has {found} records, its header says {expected}; it was cut off or edited")]
+    Records {
+        /// By the header.
+        expected: usize,
+        /// In the file.
+        found: usize,
+    },
+    /// See the message.
+    #[error("has digest {found}, its header says {expected}; it was edited or damaged")]
+    Digest {
+        /// By the header.
+        expected: String,
+        /// Of the records.
+        found: String,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    format: String,
+    version: u32,
+    digest: String,
+    records: usize,
+    planner: PlannerKind,
+    range: u8,
+    sync: u32,
+    loss: f64,
+    seed: u64,
+    solid: bool,
+    max_ticks: u32,
+    starts: Vec<(i16, i16)>,
+    /// (robot, tick)
+    deaths: Vec<(u8, u32)>,
+    /// (x, y, from, until)
+    closures: Vec<(i16, i16, u32, u32)>,
+    world: WorldRows,
+}
+
+#[derive(Serialize, Deserialize)]
+struct WorldRows {
+    name: String,
+    rows: Vec<String>,
+}
+
+impl Trace {
+    /// Writes the trace in the format that this module documents.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write(&self, mut to: impl Write) -> io::Result<()> {
+        serde_json::to_writer(&mut to, &Header::of(self))?;
+        writeln!(to, "\n{}", COLUMNS.join(","))?;
+        for record in &self.records {
+            let goal = record.goal.unwrap_or(NOWHERE);
+            writeln!(
+                to,
+                "{},{},{},{},{},{},{},{},{}",
+                record.tick,
+                record.robot,
+                record.at.x,
+                record.at.y,
+                record.action,
+                goal.x,
+                goal.y,
+                record.known,
+                record.work
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Reads a trace, and checks that it is whole.
+    ///
+    /// # Errors
+    /// What is wrong, and in which line.
+    pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
+        let mut lines = from.lines();
+        let header = lines.next().transpose()?.unwrap_or_default();
+        let header: Header = serde_json::from_str(&header).map_err(TraceError::Header)?;
+        let columns = lines.next().transpose()?.unwrap_or_default();
+        if columns != COLUMNS.join(",") {
+            return Err(TraceError::Line {
+                line: 2,
+                expected: format!("the columns {}", COLUMNS.join(",")),
+                found: columns,
+            });
+        }
+        let records = lines
+            .zip(3..)
+            .map(|(text, line)| {
+                let text = text?;
+                parse_record(&text).ok_or_else(|| TraceError::Line {
+                    line,
+                    expected: format!("{} integers with commas between", COLUMNS.len()),
+                    found: text,
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        if records.len() != header.records {
+            return Err(TraceError::Records {
+                expected: header.records,
+                found: records.len(),
+            });
+        }
+        let expected = header.digest.clone();
+        let trace = Self {
+            scenario: header.scenario()?,
+            records,
+        };
+        let found = trace.digest();
+        if found != expected {
+            return Err(TraceError::Digest { expected, found });
+        }
+        Ok(trace)
+    }
+}
+
+impl Header {
+    fn of(trace: &Trace) -> Self {
+        let scenario = &trace.scenario;
+        let faults = &scenario.faults;
+        let closure = |closure: &Closure| {
+            let Cell { x, y } = closure.cell;
+            (x, y, closure.from, closure.until)
+        };
+        Self {
+            format: FORMAT.into(),
+            version: VERSION,
+            digest: trace.digest(),
+            records: trace.records.len(),
+            planner: scenario.planner,
+            range: scenario.range,
+            sync: scenario.sync,
+            loss: scenario.loss,
+            seed: scenario.seed,
+            solid: scenario.solid,
+            max_ticks: scenario.max_ticks,
+            starts: scenario
+                .starts
+                .iter()
+                .map(|cell| (cell.x, cell.y))
+                .collect(),
+            deaths: faults
+                .deaths
+                .iter()
+                .map(|death| (death.robot.0, death.tick))
+                .collect(),
+            closures: faults.closures.iter().map(closure).collect(),
+            world: WorldRows::of(&scenario.world),
+        }
+    }
+
+    fn scenario(self) -> Result<Scenario, TraceError> {
+        if self.format != FORMAT || self.version != VERSION {
+            return Err(TraceError::Format {
+                format: self.format,
+                version: self.version,
+            });
+        }
+        let death = |(robot, tick)| Death {
+            robot: RobotId(robot),
+            tick,
+        };
+        let closure = |(x, y, from, until)| Closure {
+            cell: Cell::new(x, y),
+            from,
+            until,
+        };
+        let scenario = Scenario {
+            world: Arc::new(self.world.world()?),
+            starts: self
+                .starts
+                .into_iter()
+                .map(|(x, y)| Cell::new(x, y))
+                .collect(),
+            planner: self.planner,
+            range: self.range,
+            sync: self.sync,
+            loss: self.loss,
+            seed: self.seed,
+            solid: self.solid,
+            max_ticks: self.max_ticks,
+            faults: Faults {
+                deaths: self.deaths.into_iter().map(death).collect(),
+                closures: self.closures.into_iter().map(closure).collect(),
+            },
+        };
+        scenario.check()?;
+        Ok(scenario)
+    }
+}
+
+impl WorldRows {
+    fn of(world: &World) -> Self {
+        let Extent { width, height } = world.extent();
+        let sign = |x, y| match world.is_free(Cell::new(x, y)) {
+            true => '.',
+            false => '#',
+        };
+        Self {
+            name: world.name().into(),
+            rows: (0..height as i16)
+                .map(|y| (0..width as i16).map(|x| sign(x, y)).collect())
+                .collect(),
+        }
+    }
+
+    fn world(self) -> Result<World, TraceError> {
+        let width = self.rows.first().map_or(0, String::len);
+        for (row, text) in self.rows.iter().zip(1..).map(|(text, row)| (row, text)) {
+            if text.len() != width {
+                return Err(TraceError::Ragged {
+                    row,
+                    expected: width,
+                    found: text.len(),
+                });
+            }
+        }
+        let side = |length| u16::try_from(length).unwrap_or(u16::MAX);
+        let extent = Extent::new(side(width), side(self.rows.len()));
+        let blocked = |cell: Cell| self.rows[cell.y as usize].as_bytes()[cell.x as usize] != b'.';
+        Ok(World::from_fn(&self.name, extent, blocked)?)
+    }
+}
+
+fn parse_record(line: &str) -> Option<Record> {
+    let mut numbers = line.split(',');
+    let mut next = || numbers.next();
+    let tick = next()?.parse().ok()?;
+    let robot = next()?.parse().ok()?;
+    let at = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
+    let action = next()?.parse().ok()?;
+    let goal = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
+    let known = next()?.parse().ok()?;
+    let work = next()?.parse().ok()?;
+    next().is_none().then_some(Record {
+        tick,
+        robot,
+        at,
+        action,
+        goal: (goal != NOWHERE).then_some(goal),
+        known,
+        work,
+    })
+}

@@ -1,0 +1,167 @@
+//! What can be wrong with a map, said so that the reader can mend it.
+
+use std::io;
+use std::path::PathBuf;
+
+use planner_core::{Cell, Extent};
+use thiserror::Error;
+
+use super::grid::LARGEST;
+
+/// A world that cannot be had, and why.
+#[derive(Debug, Error)]
+#[error("{map}: {problem}")]
+pub struct WorldError {
+    /// The file as it was named, or the name of a world without a file.
+    pub map: String,
+    /// What is wrong with it.
+    pub problem: Problem,
+}
+
+/// What is wrong: where, what was expected, what was found, what to do.
+///
+/// Lines and columns count from 1.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+#[allow(missing_docs)] // each variant's message is its documentation
+pub enum Problem {
+    #[error("no such file; check the path")]
+    Missing,
+    #[error("cannot be read: {0}; check that it is a file that you may read")]
+    Unreadable(io::Error),
+    #[error("cannot be written: {0}; check that the folder exists and may be written to")]
+    Unwritable(io::Error),
+    #[error(
+        "unknown ending `{found}`; expected one of {expected}: \
+         rename the file or convert it to one of these formats"
+    )]
+    UnknownEnding {
+        found: String,
+        expected: &'static str,
+    },
+    #[error("is not UTF-8 text; expected {expected}")]
+    NotText { expected: &'static str },
+
+    #[error(
+        "is not a complete image ({0}); expected a whole PNG or PGM file: \
+         copy it again or export it again"
+    )]
+    BrokenImage(image::ImageError),
+    #[error("the image {} that key `image` names cannot be used: {problem}", path.display())]
+    RosImage {
+        path: PathBuf,
+        problem: Box<Problem>,
+    },
+    #[error("key `{key}`: expected {expected}, found {found}")]
+    Key {
+        key: &'static str,
+        expected: &'static str,
+        found: String,
+    },
+    #[error("is not a map_server YAML file: {0}")]
+    Yaml(String),
+
+    #[error("--pixels-per-cell is 0; expected 1 or more")]
+    NoPixelsPerCell,
+    #[error(
+        "has no resolution, so --cell-size {metres} means nothing here; \
+         use --pixels-per-cell, or describe the image with a map_server YAML file"
+    )]
+    NoResolution { metres: f64 },
+    #[error(
+        "--cell-size {metres} is smaller than one pixel ({resolution} m by key `resolution`); \
+         use {resolution} or more"
+    )]
+    CellSize { metres: f64, resolution: f64 },
+
+    #[error("has no cell at all; expected at least one row with a free cell")]
+    Empty,
+    #[error("has no free cell; expected at least one: are light and dark the wrong way round?")]
+    NoFreeCell,
+    #[error("{width}×{height} cells are more than the largest compiled size, {LARGEST}; {advice}")]
+    TooLarge {
+        width: usize,
+        height: usize,
+        advice: String,
+    },
+    #[error(
+        "line {line}: expected a row of {expected} cells, found {found}; \
+         make all rows equally long (spaces at the end count too)"
+    )]
+    Ragged {
+        line: usize,
+        expected: usize,
+        found: usize,
+    },
+    #[error("line {line}, column {column}: unknown character {found:?}; expected {expected}")]
+    UnknownCharacter {
+        line: usize,
+        column: usize,
+        found: char,
+        expected: &'static str,
+    },
+    #[error(
+        "line {line}, column {column}: start {digit} is there a second time; \
+         give each robot a digit of its own"
+    )]
+    RepeatedStart {
+        line: usize,
+        column: usize,
+        digit: char,
+    },
+    #[error(
+        "line {line}: expected {expected}, found {found:?}; \
+         mend the MovingAI header, or name a plain text map .txt"
+    )]
+    Header {
+        line: usize,
+        expected: &'static str,
+        found: String,
+    },
+    #[error(
+        "expected {expected} rows of cells as `height` says, found {found}; \
+         mend the header or the rows"
+    )]
+    Rows { expected: usize, found: usize },
+
+    #[error(
+        "start {start} is outside the map of {extent} cells; \
+         x counts from 0 at the left, y from 0 at the top"
+    )]
+    StartOutside { start: Cell, extent: Extent },
+    #[error("start {start} is an obstacle; the nearest free cell is {nearest}")]
+    StartOnObstacle { start: Cell, nearest: Cell },
+    #[error(
+        "{robots} robots need a cell each, but only {cells} free cells can be reached \
+         from the start; use fewer robots or leave out --solid"
+    )]
+    TooManyRobots { robots: usize, cells: usize },
+
+    #[error("{extent} cells are too few to generate; expected {smallest}×{smallest} or more")]
+    TooSmall { extent: Extent, smallest: u16 },
+    #[error("{name} {found}; expected {lowest} to {highest}")]
+    Parameter {
+        name: &'static str,
+        found: u16,
+        lowest: u16,
+        highest: u16,
+    },
+}
+
+impl Problem {
+    /// This problem as an error about `map`.
+    pub(super) fn of(self, map: impl Into<String>) -> WorldError {
+        WorldError {
+            map: map.into(),
+            problem: self,
+        }
+    }
+
+    /// What an operating system error on opening a file means.
+    pub(super) fn from_read(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::NotFound => Self::Missing,
+            _ => Self::Unreadable(error),
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Where robots stand when a run begins.
+
+use planner_core::Cell;
+
+use super::World;
+use super::dice::Dice;
+use super::error::{Problem, WorldError};
+
+/// How the robots' first cells are chosen.
+///
+/// `Center`, `Corner` and `Random` give one cell of the largest component, at
+/// which the whole team starts together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Starts {
+    /// Robot i starts at the i-th of these cells. If there are more robots
+    /// than cells, the list is gone through again; an empty list is `Center`.
+    At(Vec<Cell>),
+    /// Nearest to the centre of the map.
+    Center,
+    /// Nearest to the top left corner.
+    Corner,
+    /// Any cell, by this seed.
+    Random(u64),
+}
+
+impl World {
+    /// Where robots start if nobody says otherwise: at the digits of the map
+    /// if it has any, else in the centre.
+    pub fn default_starts(&self) -> Starts {
+        if self.starts().is_empty() {
+            Starts::Center
+        } else {
+            Starts::At(self.starts().to_vec())
+        }
+    }
+
+    /// One free cell for each of `robots`.
+    ///
+    /// Robots may share a cell, unless they are `solid`: then a robot whose
+    /// cell is taken gets the nearest free one (in steps) that it can reach.
+    ///
+    /// # Errors
+    /// A start outside the map or on an obstacle; more solid robots than cells
+    /// that can be reached.
+    pub fn place(
+        &self,
+        robots: usize,
+        starts: &Starts,
+        solid: bool,
+    ) -> Result<Vec<Cell>, WorldError> {
+        let anchors = self
+            .anchors(starts)
+            .map_err(|problem| problem.of(self.name()))?;
+        let wished = anchors.iter().copied().cycle().take(robots);
+        if !solid {
+            return Ok(wished.collect());
+        }
+        let mut taken = Vec::with_capacity(robots);
+        for anchor in wished {
+            let wave = self.grid.wave(&[anchor]);
+            let free = wave.iter().copied().find(|cell| !taken.contains(cell));
+            taken.push(free.ok_or_else(|| {
+                Problem::TooManyRobots {
+                    robots,
+                    cells: wave.len(),
+                }
+                .of(self.name())
+            })?);
+        }
+        Ok(taken)
+    }
+
+    fn anchors(&self, starts: &Starts) -> Result<Vec<Cell>, Problem> {
+        let extent = self.extent();
+        let component = || self.grid.largest_component();
+        let nearest = |distance: &dyn Fn(Cell) -> u32| {
+            let key = |cell: &Cell| (distance(*cell), cell.y, cell.x);
+            component()
+                .into_iter()
+                .min_by_key(key)
+                .into_iter()
+                .collect()
+        };
+        Ok(match starts {
+            Starts::At(cells) if !cells.is_empty() => {
+                for &start in cells {
+                    self.check_start(start)?;
+                }
+                cells.clone()
+            }
+            Starts::Center | Starts::At(_) => {
+                // Doubled coordinates: the centre of an even side lies between two cells.
+                let centre = Cell::new(extent.width as i16 - 1, extent.height as i16 - 1);
+                nearest(&|cell| Cell::new(2 * cell.x, 2 * cell.y).distance_squared(centre))
+            }
+            Starts::Corner => nearest(&|cell| cell.distance_squared(Cell::new(0, 0))),
+            Starts::Random(seed) => Dice::new(*seed).pick(&component()).into_iter().collect(),
+        })
+    }
+
+    fn check_start(&self, start: Cell) -> Result<(), Problem> {
+        let extent = self.extent();
+        if !extent.contains(start) {
+            Err(Problem::StartOutside { start, extent })
+        } else if !self.is_free(start) {
+            Err(Problem::StartOnObstacle {
+                start,
+                nearest: self.nearest_free(start),
+            })
+        } else {
+            Ok(())
+        }
+    }
+}

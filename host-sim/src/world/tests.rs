@@ -1,0 +1,1 @@
+//! Laws of worlds, whatever they come from.

@@ -1,0 +1,33 @@
+//! From a world to a file.
+
+use std::fs;
+use std::path::Path;
+
+use image::ImageFormat;
+
+use super::World;
+use super::error::{Problem, WorldError};
+use super::raster;
+use super::read::{ending, unknown_ending};
+
+impl World {
+    /// Writes the map in the format of the ending: `.png` or `.pgm` (a square
+    /// of `pixels_per_cell` pixels for each cell), `.map` (MovingAI), `.txt`.
+    /// Only text maps keep the starts.
+    ///
+    /// # Errors
+    /// Another ending; a file that cannot be written; `pixels_per_cell` 0.
+    pub fn write(&self, path: impl AsRef<Path>, pixels_per_cell: u32) -> Result<(), WorldError> {
+        let path = path.as_ref();
+        let bytes = match ending(path).as_str() {
+            "png" => raster::encode(self, pixels_per_cell, ImageFormat::Png),
+            "pgm" => raster::encode(self, pixels_per_cell, ImageFormat::Pnm),
+            "map" => Ok(self.to_movingai().into_bytes()),
+            "txt" => Ok(self.to_text().into_bytes()),
+            _ => Err(unknown_ending(path, ".png, .pgm, .map or .txt")),
+        };
+        bytes
+            .and_then(|bytes| fs::write(path, bytes).map_err(Problem::Unwritable))
+            .map_err(|problem| problem.of(path.display().to_string()))
+    }
+}

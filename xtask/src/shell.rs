@@ -2,16 +2,22 @@
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
 /// The folder of the workspace.
 pub(crate) fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .parent()
-        .expect("xtask lies in the workspace")
+    static ROOT: OnceLock<PathBuf> = OnceLock::new();
+    ROOT.get_or_init(|| {
+        // Cargo says where we are when it runs us; where we were compiled can be
+        // another checkout that shares a target folder with this one.
+        let xtask = std::env::var_os("CARGO_MANIFEST_DIR")
+            .map_or(env!("CARGO_MANIFEST_DIR").into(), PathBuf::from);
+        xtask.parent().map(Path::to_path_buf).unwrap_or(xtask)
+    })
 }
 
 /// A command that runs in [`root`], without input.

@@ -86,7 +86,7 @@ const CHECKS: &[Check] = &[
         name: "test",
         title: "unit, property, cross-crate and documentation tests",
         run: || {
-            cargo(["test", "--workspace", "--locked"])
+            cargo(["test", "--workspace", "--locked", "--no-fail-fast"])
                 .run()
                 .map(nothing)
         },

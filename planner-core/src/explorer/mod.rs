@@ -1,8 +1,8 @@
 //! The complete explorer: bounded work per tick, no matter how large the map is
 //! and how many robots there are.
 //!
-//! Near decisions ([`window`]) choose among the frontiers around the robot; where
-//! it has none of its own there, a search over the whole map ([`far`]) runs in
+//! Near decisions (`window`) choose among the frontiers around the robot; where
+//! it has none of its own there, a search over the whole map (`far`) runs in
 //! the background, a slice a tick, while the robot keeps walking. What makes it
 //! complete is the *commitment* rule: since the robot last learnt anything, it
 //! may change to a longer plan only a fixed number of times.
@@ -19,6 +19,7 @@
 
 mod closed;
 mod far;
+mod maybe;
 mod others;
 mod path;
 mod role;
@@ -31,6 +32,7 @@ pub use role::{Role, exchange};
 
 use closed::ClosedCells;
 use far::{FarSearch, Outcome};
+use maybe::Maybe;
 use others::Others;
 use role::Plan;
 use surroundings::Surroundings;
@@ -105,8 +107,8 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     far_again: u32,
     /// Whether the map has changed, or a cell was closed, since the far search began.
     far_is_doubtful: bool,
-    /// The step that the last tick asked for.
-    pending: Option<Direction>,
+    /// Whether the last tick asked for the first step of the plan.
+    stepping: bool,
     work: u32,
 }
 
@@ -141,7 +143,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             far: FarSearch::new(),
             far_again: 0,
             far_is_doubtful: false,
-            pending: None,
+            stepping: false,
             work: 0,
         }
     }
@@ -185,7 +187,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far.cancel();
         self.far_again = 0;
         self.far_is_doubtful = false;
-        self.pending = None;
+        self.stepping = false;
         self.work = 0;
         Ok(())
     }
@@ -317,7 +319,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     fn stop(&mut self, stop: Stop) -> Action {
         self.role.plan = None;
-        self.role.stopped = Some(stop);
+        self.role.stopped = Maybe::Just(stop);
         self.far.cancel();
         Action::Stop(stop)
     }
@@ -347,8 +349,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
         self.work = 0;
-        self.pending = None;
-        if let Some(stop) = self.role.stopped {
+        self.stepping = false;
+        if let Some(stop) = self.role.stopped.get() {
             return Action::Stop(stop);
         }
         if self.around.map.frontiers() == 0 {
@@ -387,7 +389,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         match self.next_step() {
             Some(step) => {
-                self.pending = Some(step);
+                self.stepping = true;
                 Action::Move(step)
             }
             None => Action::Wait,
@@ -395,7 +397,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn report(&mut self, motion: Motion) {
-        let Some(step) = self.pending.take() else {
+        let plan = self.role.plan.filter(|_| self.stepping);
+        self.stepping = false;
+        let Some(step) = plan.and_then(|plan| plan.path.first()) else {
             return;
         };
         let next = self.around.position.step(step);
@@ -471,7 +475,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn adopt(&mut self, role: Role) {
         self.role = role;
-        self.pending = None;
+        self.stepping = false;
         self.far.cancel();
     }
 }

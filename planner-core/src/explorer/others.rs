@@ -49,7 +49,7 @@ impl Others {
         }
         // There is room now; by id, so that ties fall the same way for everybody.
         let place = self.list.iter().take_while(|other| other.id < id).count();
-        let _ = self.list.insert(place, heard);
+        let _ = self.list.insert(place.min(self.list.len()), heard);
     }
 
     /// Forgets a robot that has stopped, or else the farthest, if it is farther
@@ -59,14 +59,11 @@ impl Others {
             let distance = other.status.position.distance_squared(own);
             (other.has_stopped(), distance)
         };
-        let least = self
-            .list
-            .iter()
-            .enumerate()
-            .max_by_key(|(_, other)| rank(other));
-        match least {
-            Some((index, other)) if rank(heard) < rank(other) => {
-                self.list.remove(index);
+        let least = self.list.iter().max_by_key(|other| rank(other));
+        match least.map(|other| (other.id, rank(other))) {
+            Some((id, worst)) if rank(heard) < worst => {
+                // Not `remove`, which panics for an index outside.
+                self.list.retain(|other| other.id != id);
                 true
             }
             _ => false,

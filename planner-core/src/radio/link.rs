@@ -276,13 +276,10 @@ impl<const TH: usize> Link<TH> {
             return is_news;
         }
         if self.latest.is_full() {
-            let oldest = self
-                .latest
-                .iter()
-                .enumerate()
-                .max_by_key(|(_, of)| of.age)
-                .map_or(0, |(index, _)| index);
-            self.latest.swap_remove(oldest);
+            if let Some(oldest) = self.latest.iter_mut().max_by_key(|of| of.age) {
+                *oldest = heard;
+            }
+            return true;
         }
         let _ = self.latest.push(heard);
         true

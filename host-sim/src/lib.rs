@@ -8,6 +8,7 @@
 //! that everything else is drawn from.
 
 mod coverage;
+pub mod draw;
 pub mod fleet;
 pub mod medium;
 pub mod peers;

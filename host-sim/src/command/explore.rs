@@ -7,6 +7,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::Args;
+use host_sim::draw;
 use host_sim::planners::PlannerKind;
 use host_sim::run::{self, Options, Progress, Scenario};
 use host_sim::summary::Summary;
@@ -121,8 +122,12 @@ impl Explore {
 
         let summary = Summary::new(&scenario, &outcome, trace.digest());
         let json = serde_json::to_string_pretty(&summary)?;
-        folder.write("trace.csv", |file| trace.write(file))?;
-        folder.write("summary.json", |file| writeln!(file, "{json}"))?;
+        folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
+        folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
+        folder.write("explored.png", |file| draw::picture(&trace, file))?;
+        folder.write("explored.gif", |file| draw::animation(&trace, file))?;
+        folder.write("coverage.csv", |file| Ok(draw::coverage_csv(&trace, file)?))?;
+        folder.write("coverage.png", |file| draw::coverage_plot(&trace, file))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
 

@@ -4,15 +4,16 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use host_sim::draw::DrawError;
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// A folder that cannot be written to.
 #[derive(Debug, Error)]
-#[error("{}: cannot be written to: {problem}; choose another folder with --out", path.display())]
+#[error("{}: {problem}; choose another folder with --out", path.display())]
 pub(super) struct FolderError {
     path: PathBuf,
-    problem: io::Error,
+    problem: DrawError,
 }
 
 /// Files on their way into a folder.
@@ -29,7 +30,10 @@ impl Folder {
                 path,
                 files: Vec::new(),
             }),
-            Err(problem) => Err(FolderError { path, problem }),
+            Err(problem) => Err(FolderError {
+                path,
+                problem: problem.into(),
+            }),
         }
     }
 
@@ -41,12 +45,12 @@ impl Folder {
     pub(super) fn write(
         &mut self,
         name: &'static str,
-        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+        fill: impl FnOnce(&mut dyn Write) -> Result<(), DrawError>,
     ) -> Result<(), FolderError> {
         let filled = || {
             let mut writer = BufWriter::new(temporary(&self.path)?);
             fill(&mut writer)?;
-            Ok(writer.into_inner()?)
+            Ok(writer.into_inner().map_err(io::Error::from)?)
         };
         let file = filled().map_err(|problem| self.error(problem))?;
         self.files.push((file, name));
@@ -57,12 +61,12 @@ impl Folder {
     pub(super) fn close(mut self) -> Result<(), FolderError> {
         for (file, name) in std::mem::take(&mut self.files) {
             file.persist(self.path.join(name))
-                .map_err(|failed| self.error(failed.error))?;
+                .map_err(|failed| self.error(failed.error.into()))?;
         }
         Ok(())
     }
 
-    fn error(&self, problem: io::Error) -> FolderError {
+    fn error(&self, problem: DrawError) -> FolderError {
         FolderError {
             path: self.path.clone(),
             problem,

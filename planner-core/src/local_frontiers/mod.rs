@@ -75,7 +75,7 @@ enum Phase {
 /// cells.
 ///
 /// Memory: 153 bytes a tile (the map's 25 and 128 for the trace), and less than
-/// half a KiB.
+/// one KiB.
 #[derive(Clone, PartialEq, Eq)]
 pub struct LocalFrontiers<const TW: usize, const TH: usize> {
     config: Config,

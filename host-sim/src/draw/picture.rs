@@ -1,0 +1,310 @@
+//! The final picture: what was seen, and every robot's way.
+
+use std::io;
+
+use planner_core::Cell;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::paint::{Ground, INK, ROBOT_COLORS, robot_color, text};
+use super::replay::{Replay, cells};
+use super::{Canvas, DrawError};
+use crate::trace::Trace;
+
+/// Sides of the drawn map in pixels, about.
+const SIDE: u32 = 960;
+/// Least width, so that the caption has room.
+const LEAST_WIDTH: u32 = 720;
+const MARGIN: i32 = 16;
+const LINE: i32 = 22;
+const TEXT: u32 = 15;
+
+type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+
+/// Writes the final picture of a trace as PNG.
+///
+/// # Errors
+/// Those of `to`.
+pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
+    let mut replay = Replay::new(trace);
+    while replay.tick() {}
+    let frame = Frame::of(trace);
+    let keys = keys(trace, &replay, frame.width);
+    let rows = keys.last().map_or(0, |key| key.row + 1);
+    let lines = caption(trace, &replay);
+    let footer = MARGIN + LINE * (lines.len() as i32 + rows) + MARGIN / 2;
+    let mut canvas = Canvas::new(frame.width, frame.bottom() as u32 + footer as u32);
+    {
+        let size = (canvas.width, canvas.height);
+        let area = BitMapBackend::with_buffer(&mut canvas.pixels, size).into_drawing_area();
+        frame.draw_ground(&area, &replay)?;
+        frame.draw_ways(&area, trace)?;
+        frame.draw_robots(&area, trace, &replay)?;
+        let mut y = frame.bottom() + MARGIN;
+        for line in &lines {
+            area.draw(&Text::new(line.as_str(), (MARGIN, y), text(TEXT)))?;
+            y += LINE;
+        }
+        for key in &keys {
+            key.draw(&area, y + key.row * LINE)?;
+        }
+        area.present()?;
+    }
+    canvas.write_png(to)
+}
+
+/// Where the map lies in the picture.
+struct Frame {
+    width: u32,
+    left: i32,
+    /// Side of a cell in pixels.
+    scale: i32,
+    columns: i32,
+    rows: i32,
+    robots: usize,
+}
+
+impl Frame {
+    fn of(trace: &Trace) -> Self {
+        let extent = trace.scenario.world.extent();
+        let longest = u32::from(extent.width.max(extent.height));
+        let scale = (SIDE / longest).clamp(2, 24);
+        let map = u32::from(extent.width) * scale;
+        let width = LEAST_WIDTH.max(map + 2 * MARGIN as u32);
+        Self {
+            width,
+            left: (width - map) as i32 / 2,
+            scale: scale as i32,
+            columns: extent.width.into(),
+            rows: extent.height.into(),
+            robots: trace.scenario.starts.len(),
+        }
+    }
+
+    fn bottom(&self) -> i32 {
+        MARGIN + self.rows * self.scale
+    }
+
+    fn corner(&self, cell: Cell) -> (i32, i32) {
+        (
+            self.left + i32::from(cell.x) * self.scale,
+            MARGIN + i32::from(cell.y) * self.scale,
+        )
+    }
+
+    fn middle(&self, cell: Cell) -> (i32, i32) {
+        let (x, y) = self.corner(cell);
+        (x + self.scale / 2, y + self.scale / 2)
+    }
+
+    /// The middle of a cell, a little aside, so that the ways of several robots
+    /// through one corridor stay apart.
+    fn lane(&self, robot: usize, cell: Cell) -> (i32, i32) {
+        let (x, y) = self.middle(cell);
+        let lanes = self.robots.min(ROBOT_COLORS) as i32;
+        let lane = robot as i32 % lanes;
+        let aside = (2 * lane - (lanes - 1)) * self.scale / (3 * lanes);
+        (x + aside, y + aside)
+    }
+
+    fn draw_ground(&self, area: &Area<'_>, replay: &Replay<'_>) -> Result<(), DrawError> {
+        for cell in cells(replay.extent()) {
+            let ground = replay.ground(cell);
+            let (x, y) = self.corner(cell);
+            let (right, bottom) = (x + self.scale, y + self.scale);
+            // plotters' rectangles leave out their last row and column.
+            area.draw(&Rectangle::new(
+                [(x, y), (right, bottom)],
+                ground.color().filled(),
+            ))?;
+            if ground == Ground::Unseen && self.scale >= 6 {
+                let cross = RGBColor(170, 30, 60).stroke_width(1);
+                let (near, far) = (self.scale / 4, self.scale - self.scale / 4);
+                for (from, to) in [((near, near), (far, far)), ((near, far), (far, near))] {
+                    let ends = [(x + from.0, y + from.1), (x + to.0, y + to.1)];
+                    area.draw(&PathElement::new(ends, cross))?;
+                }
+            }
+        }
+        let outline = [
+            (self.left - 1, MARGIN - 1),
+            (self.left + self.columns * self.scale, self.bottom()),
+        ];
+        Ok(area.draw(&Rectangle::new(outline, INK.stroke_width(1)))?)
+    }
+
+    fn draw_ways(&self, area: &Area<'_>, trace: &Trace) -> Result<(), DrawError> {
+        let width = (self.scale as u32 / 6).clamp(1, 3);
+        let mut ways: Vec<Vec<Cell>> = trace
+            .scenario
+            .starts
+            .iter()
+            .map(|&start| vec![start])
+            .collect();
+        for record in &trace.records {
+            let way = &mut ways[usize::from(record.robot)];
+            if way.last() != Some(&record.after()) {
+                way.push(record.after());
+            }
+        }
+        for (robot, way) in ways.iter().enumerate() {
+            let points: Vec<_> = way.iter().map(|&cell| self.lane(robot, cell)).collect();
+            let style = robot_color(robot).stroke_width(width);
+            area.draw(&PathElement::new(points, style))?;
+        }
+        Ok(())
+    }
+
+    fn draw_robots(
+        &self,
+        area: &Area<'_>,
+        trace: &Trace,
+        replay: &Replay<'_>,
+    ) -> Result<(), DrawError> {
+        let radius = (self.scale * 2 / 5).clamp(3, 7);
+        for (robot, (&start, &end)) in trace
+            .scenario
+            .starts
+            .iter()
+            .zip(replay.positions())
+            .enumerate()
+        {
+            draw_start(area, self.lane(robot, start), radius, robot_color(robot))?;
+            draw_end(area, self.lane(robot, end), radius, robot_color(robot))?;
+        }
+        Ok(())
+    }
+}
+
+fn draw_start(
+    area: &Area<'_>,
+    at: (i32, i32),
+    radius: i32,
+    color: RGBColor,
+) -> Result<(), DrawError> {
+    area.draw(&Circle::new(at, radius, WHITE.filled()))?;
+    Ok(area.draw(&Circle::new(at, radius, color.stroke_width(2)))?)
+}
+
+fn draw_end(
+    area: &Area<'_>,
+    at: (i32, i32),
+    radius: i32,
+    color: RGBColor,
+) -> Result<(), DrawError> {
+    area.draw(&Circle::new(at, radius + 1, WHITE.filled()))?;
+    Ok(area.draw(&Circle::new(at, radius, color.filled()))?)
+}
+
+/// The scenario in a line.
+pub(super) fn title(trace: &Trace) -> String {
+    let scenario = &trace.scenario;
+    let radio = match scenario.sync {
+        0 => "no radio".into(),
+        1 if scenario.loss == 0.0 => "maps shared every tick".into(),
+        sync => {
+            let loss = 100.0 * scenario.loss;
+            format!("maps shared every {sync} ticks, {loss:.0} % lost")
+        }
+    };
+    format!(
+        "{} ({} cells), {} × {}, range {} cells, {radio}",
+        scenario.world.name(),
+        scenario.world.extent(),
+        scenario.starts.len(),
+        scenario.planner,
+        scenario.range
+    )
+}
+
+fn caption(trace: &Trace, replay: &Replay<'_>) -> [String; 2] {
+    let (seen, reachable) = (replay.seen_cells(), replay.reachable_cells());
+    let ticks = trace.ticks();
+    [
+        title(trace),
+        format!("{seen} of {reachable} reachable cells seen in {ticks} ticks"),
+    ]
+}
+
+/// One entry of the legend.
+struct Key {
+    x: i32,
+    row: i32,
+    label: String,
+    sign: Sign,
+}
+
+enum Sign {
+    Ground(Ground),
+    Start,
+    End,
+    Robot(usize),
+}
+
+impl Key {
+    fn draw(&self, area: &Area<'_>, y: i32) -> Result<(), DrawError> {
+        let (x, middle) = (self.x, y + LINE / 2 - 3);
+        match self.sign {
+            Sign::Ground(ground) => {
+                let square = [(x, middle - 6), (x + 14, middle + 7)];
+                area.draw(&Rectangle::new(square, ground.color().filled()))?;
+                area.draw(&Rectangle::new(square, INK.stroke_width(1)))?;
+            }
+            Sign::Start => draw_start(area, (x + 7, middle), 5, INK)?,
+            Sign::End => draw_end(area, (x + 7, middle), 5, INK)?,
+            Sign::Robot(robot) => {
+                let line = [(x, middle), (x + 14, middle)];
+                area.draw(&PathElement::new(line, robot_color(robot).stroke_width(3)))?;
+            }
+        }
+        Ok(area.draw(&Text::new(self.label.as_str(), (x + 20, y), text(TEXT)))?)
+    }
+}
+
+/// The legend, broken into rows of `width` pixels.
+fn keys(trace: &Trace, replay: &Replay<'_>, width: u32) -> Vec<Key> {
+    let is_there =
+        |ground: &Ground| cells(replay.extent()).any(|cell| replay.ground(cell) == *ground);
+    let grounds = Ground::ALL.into_iter().filter(is_there);
+    let mut entries: Vec<(String, Sign)> = grounds
+        .map(|ground| (ground.name().into(), Sign::Ground(ground)))
+        .collect();
+    entries.push(("start".into(), Sign::Start));
+    entries.push(("end".into(), Sign::End));
+    let robots = trace.scenario.starts.len();
+    for robot in 0..robots.min(ROBOT_COLORS) {
+        let same: Vec<String> = (robot..robots)
+            .step_by(ROBOT_COLORS)
+            .take(4)
+            .map(|robot| robot.to_string())
+            .collect();
+        let more = if robots > 4 * ROBOT_COLORS {
+            ", …"
+        } else {
+            ""
+        };
+        entries.push((
+            format!("robot {}{more}", same.join(", ")),
+            Sign::Robot(robot),
+        ));
+    }
+    let (mut x, mut row) = (MARGIN, 0);
+    entries
+        .into_iter()
+        .map(|(label, sign)| {
+            // The font is fixed-width: 0.6 of its size a character.
+            let wide = 20 + (label.chars().count() as i32 * TEXT as i32 * 62) / 100 + 18;
+            if x > MARGIN && x + wide > width as i32 {
+                (x, row) = (MARGIN, row + 1);
+            }
+            let key = Key {
+                x,
+                row,
+                label,
+                sign,
+            };
+            x += wide;
+            key
+        })
+        .collect()
+}

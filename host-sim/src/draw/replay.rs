@@ -1,0 +1,109 @@
+//! What the team had seen, and where it was, tick by tick.
+
+use std::sync::Arc;
+
+use planner_core::{Cell, Extent};
+
+use super::paint::Ground;
+use crate::sensor::Sensor;
+use crate::trace::{Record, Trace};
+use crate::world::Reachable;
+
+/// A trace played forward.
+pub struct Replay<'a> {
+    trace: &'a Trace,
+    sensor: Sensor,
+    reachable: Reachable,
+    /// Cells that somebody has seen, row by row.
+    seen: Vec<bool>,
+    seen_cells: u32,
+    positions: Vec<Cell>,
+    next: usize,
+}
+
+impl<'a> Replay<'a> {
+    /// The trace before its first tick.
+    pub fn new(trace: &'a Trace) -> Self {
+        let scenario = &trace.scenario;
+        let world = &scenario.world;
+        Self {
+            trace,
+            sensor: Sensor::new(Arc::clone(world), scenario.range),
+            reachable: world.reachable(&scenario.starts),
+            seen: vec![false; world.extent().cells() as usize],
+            seen_cells: 0,
+            positions: scenario.starts.clone(),
+            next: 0,
+        }
+    }
+
+    /// Plays the next tick; false if there is none.
+    pub fn tick(&mut self) -> bool {
+        let rest = &self.trace.records[self.next..];
+        let Some(tick) = rest.first().map(|record| record.tick) else {
+            return false;
+        };
+        let records = rest.iter().take_while(|record| record.tick == tick);
+        for record in records {
+            self.play(record);
+            self.next += 1;
+        }
+        true
+    }
+
+    fn play(&mut self, record: &Record) {
+        let robot = usize::from(record.robot);
+        let extent = self.trace.scenario.world.extent();
+        let sighting = &self.sensor.view(record.at).sighting;
+        for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
+            if extent.contains(cell) {
+                let seen = &mut self.seen[index(extent, cell)];
+                self.seen_cells += u32::from(!*seen && self.reachable.contains(cell));
+                *seen = true;
+            }
+        }
+        if let Some(position) = self.positions.get_mut(robot) {
+            *position = record.after();
+        }
+    }
+
+    /// Where the robots are after the last tick played.
+    pub fn positions(&self) -> &[Cell] {
+        &self.positions
+    }
+
+    /// Reachable cells that somebody has seen.
+    pub fn seen_cells(&self) -> u32 {
+        self.seen_cells
+    }
+
+    /// Cells that can be reached.
+    pub fn reachable_cells(&self) -> u32 {
+        self.reachable.count()
+    }
+
+    pub(super) fn extent(&self) -> Extent {
+        self.trace.scenario.world.extent()
+    }
+
+    pub(super) fn ground(&self, cell: Cell) -> Ground {
+        let world = &self.trace.scenario.world;
+        let seen = self.seen[index(world.extent(), cell)];
+        match (seen, world.is_free(cell)) {
+            (true, true) => Ground::Free,
+            (true, false) => Ground::Obstacle,
+            (false, _) if self.reachable.contains(cell) => Ground::Unseen,
+            (false, _) => Ground::Unknown,
+        }
+    }
+}
+
+fn index(extent: Extent, cell: Cell) -> usize {
+    cell.y as usize * usize::from(extent.width) + cell.x as usize
+}
+
+/// Every cell of an extent, row by row.
+pub(super) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
+    let row = move |y| (0..extent.width as i16).map(move |x| Cell::new(x, y));
+    (0..extent.height as i16).flat_map(row)
+}

@@ -17,8 +17,6 @@ fn any_extent() -> impl Strategy<Value = (u16, u16)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
-
     #[test]
     fn every_world_is_one_piece_of_the_size_that_was_asked_for(
         (width, height) in any_extent(), seed: u64,

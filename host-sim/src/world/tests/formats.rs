@@ -16,8 +16,6 @@ fn same_cells(a: &World, b: &World) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
     #[test]
     fn every_format_round_trips(world in any_world(), side in 1u32..4) {
         let folder = folder();

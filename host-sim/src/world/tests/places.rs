@@ -25,8 +25,6 @@ fn naive_flood(world: &World, from: Cell) -> BTreeSet<Cell> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
-
     #[test]
     fn reachability_is_the_naive_flood(world in any_world(), x in 0i16..12, y in 0i16..12) {
         let reachable = world.reachable(&[cell(x, y)]);

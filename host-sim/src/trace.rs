@@ -152,3 +152,6 @@ impl Trace {
         self.records.last().map_or(0, |record| record.tick + 1)
     }
 }
+
+#[cfg(test)]
+mod tests;

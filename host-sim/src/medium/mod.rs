@@ -11,3 +11,6 @@ pub trait Medium<const TW: usize, const TH: usize> {
     /// One exchange among the living robots.
     fn exchange(&mut self, robots: &mut [Robot<TW, TH>]);
 }
+
+#[cfg(test)]
+mod tests;

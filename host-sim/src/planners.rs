@@ -4,6 +4,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
+use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::ExtentError;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,10 @@ use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
 pub enum PlannerKind {
     /// The complete planner with bounded work.
     Explorer,
+    /// Local frontiers as published: not complete.
+    LocalFrontiers,
+    /// The same with a second chance: not complete.
+    LocalFrontiersSecondChance,
     /// Each robot to the nearest frontier of its map.
     Closest,
     /// The robot and the frontier that are nearest to each other first, and so on.
@@ -49,12 +54,29 @@ impl PlannerKind {
                 explorer.reset(explorer::Config::new(range), id, extent, start)?;
                 explorer
             }
+            Self::LocalFrontiers => local_frontiers(false, id, extent, start)?,
+            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start)?,
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
             Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
             Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
         })
     }
+}
+
+fn local_frontiers<const TW: usize, const TH: usize>(
+    second_chance: bool,
+    id: RobotId,
+    extent: Extent,
+    start: Cell,
+) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+    let config = local_frontiers::Config {
+        second_chance,
+        ..Default::default()
+    };
+    let mut planner = Box::new(LocalFrontiers::vacant());
+    planner.reset(config, id, extent, start)?;
+    Ok(planner)
 }
 
 /// The name used on the command line, for example `closest`.

@@ -7,6 +7,7 @@ extern crate std;
 
 mod cell;
 pub mod explorer;
+pub mod local_frontiers;
 pub mod map;
 mod math;
 mod planner;

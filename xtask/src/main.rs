@@ -1,2 +1,86 @@
-//! `cargo xtask`.
-fn main() {}
+//! What Cargo cannot say by itself: every check in one command, the image for
+//! the chip, long runs. `cargo xtask --help` tells more.
+
+mod budget;
+mod checks;
+mod documents;
+mod firmware;
+mod install;
+mod shell;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Checks, builds and long runs of this project.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Runs every check, and installs what it needs for that.
+    ///
+    /// Rust targets, Miri and QEMU are installed when they are missing. Where
+    /// that is not possible, the check fails and prints the command to run.
+    /// All checks run, also after one has failed.
+    Test {
+        /// Runs only this check; may be given several times.
+        #[arg(long, value_name = "CHECK", value_parser = checks::named)]
+        only: Vec<&'static checks::Check>,
+
+        /// Lists the checks and runs none.
+        #[arg(long)]
+        list: bool,
+    },
+    /// Builds the image for the chip; prints its path, flash and static RAM.
+    BuildFirmware,
+    /// Builds the image and runs it in QEMU (an emulated STM32F405).
+    RunFirmware,
+    /// Explores random small worlds until one of them goes wrong.
+    Soak {
+        /// How many worlds.
+        #[arg(long, value_name = "N", default_value_t = 100_000)]
+        runs: u64,
+    },
+}
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().task {
+        Task::Test { list: true, .. } => {
+            checks::list();
+            Ok(())
+        }
+        Task::Test { only, .. } => checks::run(&only),
+        Task::BuildFirmware => firmware::build().map(|image| println!("{image}")),
+        Task::RunFirmware => firmware::build_and_run(),
+        Task::Soak { runs } => soak(runs),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn soak(runs: u64) -> anyhow::Result<()> {
+    let runs = runs.to_string();
+    shell::cargo(["run", "--release", "-p", "host-sim", "--", "soak", "--runs"])
+        .arg(runs)
+        .run()
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn command_line_is_consistent() {
+        super::Cli::command().debug_assert();
+    }
+}

@@ -159,7 +159,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         self.position = sighting.centre();
         self.map.visit(self.position);
         let learnt = self.map.observe(sighting);
-        self.link.announce(&self.map.take_changed());
+        self.link.announce(&mut self.map);
         self.learn(learnt)
     }
 
@@ -204,18 +204,12 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let frame = self.link.receive(bytes, self.map.extent())?;
-        let mut learnt = Learnt::default();
-        for record in &frame.tiles {
-            learnt += self.map.join_tile(record.at, record.tile);
+        let heard = self.link.receive(bytes, &mut self.map)?;
+        self.learn(heard.learnt);
+        if let Some(status) = heard.status {
+            self.hear(heard.from, status);
         }
-        // What others told goes out again in turn, not at once.
-        self.map.take_changed();
-        self.hear(frame.sender, frame.status);
-        Ok(Heard {
-            from: frame.sender,
-            learnt: self.learn(learnt),
-        })
+        Ok(heard)
     }
 
     fn map(&self) -> &Map<TW, TH> {
@@ -235,9 +229,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {
-        let mut changed = self.map.take_changed();
-        changed.extend(&self.link.take_announced());
-        changed
+        self.link.take_changed(&mut self.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {

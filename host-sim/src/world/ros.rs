@@ -131,7 +131,7 @@ fn pixels_per_cell(scale: Scale, resolution: f64) -> Result<(u32, Option<String>
     let exact = metres / resolution;
     let pixels = exact.round();
     // Anything that is no number fails the first comparison.
-    if !(exact >= 1.0 - 1e-9) || pixels > f64::from(u32::MAX) {
+    if exact.is_nan() || exact < 1.0 - 1e-9 || pixels > f64::from(u32::MAX) {
         return Err(Problem::CellSize { metres, resolution });
     }
     let note = ((exact - pixels).abs() > 1e-6 * exact).then(|| {

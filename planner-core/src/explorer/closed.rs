@@ -37,28 +37,19 @@ impl ClosedCells {
 
     pub(crate) fn refuse(&mut self, cell: Cell, now: u32) {
         self.refusals = self.refusals.saturating_add(1);
-        let index = match self.list.iter().position(|entry| entry.cell == cell) {
-            Some(index) => index,
-            None => {
-                if self.list.is_full() {
-                    // The one that opens first: it would be tried again soonest.
-                    let soonest = self
-                        .list
-                        .iter()
-                        .enumerate()
-                        .min_by_key(|(_, entry)| entry.until)
-                        .map_or(0, |(index, _)| index);
-                    self.list.swap_remove(soonest);
-                }
-                let _ = self.list.push(Refusal {
-                    cell,
-                    times: 0,
-                    until: 0,
-                });
-                self.list.len().saturating_sub(1)
-            }
+        let refused = Refusal {
+            cell,
+            times: 0,
+            until: 0,
         };
-        if let Some(entry) = self.list.get_mut(index) {
+        if !self.list.iter().any(|entry| entry.cell == cell)
+            && self.list.push(refused).is_err()
+            // Full: in place of the one that opens first, which would be tried again soonest.
+            && let Some(soonest) = self.list.iter_mut().min_by_key(|entry| entry.until)
+        {
+            *soonest = refused;
+        }
+        if let Some(entry) = self.list.iter_mut().find(|entry| entry.cell == cell) {
             entry.until = now.saturating_add(FIRST_PAUSE << entry.times.min(LONGEST));
             entry.times = entry.times.saturating_add(1);
         }

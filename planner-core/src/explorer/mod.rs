@@ -1,8 +1,8 @@
 //! The complete explorer: bounded work per tick, no matter how large the map is
 //! and how many robots there are.
 //!
-//! Near decisions ([`window`]) choose among the frontiers around the robot; where
-//! it has none of its own there, a search over the whole map ([`far`]) runs in
+//! Near decisions (`window`) choose among the frontiers around the robot; where
+//! it has none of its own there, a search over the whole map (`far`) runs in
 //! the background, a slice a tick, while the robot keeps walking. What makes it
 //! complete is the *commitment* rule: since the robot last learnt anything, it
 //! may change to a longer plan only a fixed number of times.
@@ -19,6 +19,7 @@
 
 mod closed;
 mod far;
+mod maybe;
 mod others;
 mod path;
 mod role;
@@ -31,6 +32,7 @@ pub use role::{Role, exchange};
 
 use closed::ClosedCells;
 use far::{FarSearch, Outcome};
+use maybe::Maybe;
 use others::Others;
 use role::Plan;
 use surroundings::Surroundings;
@@ -105,8 +107,8 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     far_again: u32,
     /// Whether the map has changed, or a cell was closed, since the far search began.
     far_is_doubtful: bool,
-    /// The step that the last tick asked for.
-    pending: Option<Direction>,
+    /// Whether the last tick asked for the first step of the plan.
+    stepping: bool,
     work: u32,
 }
 
@@ -141,7 +143,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             far: FarSearch::new(),
             far_again: 0,
             far_is_doubtful: false,
-            pending: None,
+            stepping: false,
             work: 0,
         }
     }
@@ -185,7 +187,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far.cancel();
         self.far_again = 0;
         self.far_is_doubtful = false;
-        self.pending = None;
+        self.stepping = false;
         self.work = 0;
         Ok(())
     }
@@ -233,8 +235,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             hysteresis: i32::from(self.config.hysteresis),
         };
         let (now, id) = (self.around.now, self.id);
-        let in_view = self.near.load(&self.around, &mut self.work);
-        let mine = if in_view {
+        let bonus = self.near.load(&self.around, &mut self.work);
+        let mine = if let Some(bonus) = &bonus {
             let others = self.others.exploring().flat_map(|other| {
                 let lower = other.id < id;
                 [Some(other.status.position), other.status.goal]
@@ -242,7 +244,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                     .flatten()
                     .map(move |cell| (cell, lower))
             });
-            self.near.best(&self.around, &aim, others, &mut self.work)
+            self.near
+                .best(&self.around, &aim, bonus, others, &mut self.work)
         } else {
             None
         };
@@ -266,10 +269,14 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             if self.far.is_idle() {
                 self.start_sweep();
             }
-            if in_view
-                && let Some(candidate) =
-                    self.near
-                        .best(&self.around, &aim, core::iter::empty(), &mut self.work)
+            if let Some(bonus) = &bonus
+                && let Some(candidate) = self.near.best(
+                    &self.around,
+                    &aim,
+                    bonus,
+                    core::iter::empty(),
+                    &mut self.work,
+                )
             {
                 self.adopt_plan(candidate);
             }
@@ -312,7 +319,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     fn stop(&mut self, stop: Stop) -> Action {
         self.role.plan = None;
-        self.role.stopped = Some(stop);
+        self.role.stopped = Maybe::Just(stop);
         self.far.cancel();
         Action::Stop(stop)
     }
@@ -334,7 +341,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         let learnt = self.around.map.observe(sighting);
         self.around.map.visit(self.around.position);
-        self.link.announce(&self.around.map.take_changed());
+        self.link.announce(&mut self.around.map);
         self.learn(learnt)
     }
 
@@ -342,8 +349,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
         self.work = 0;
-        self.pending = None;
-        if let Some(stop) = self.role.stopped {
+        self.stepping = false;
+        if let Some(stop) = self.role.stopped.get() {
             return Action::Stop(stop);
         }
         if self.around.map.frontiers() == 0 {
@@ -382,7 +389,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         match self.next_step() {
             Some(step) => {
-                self.pending = Some(step);
+                self.stepping = true;
                 Action::Move(step)
             }
             None => Action::Wait,
@@ -390,7 +397,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn report(&mut self, motion: Motion) {
-        let Some(step) = self.pending.take() else {
+        let plan = self.role.plan.filter(|_| self.stepping);
+        self.stepping = false;
+        let Some(step) = plan.and_then(|plan| plan.path.first()) else {
             return;
         };
         let next = self.around.position.step(step);
@@ -432,26 +441,16 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let frame = self.link.receive(bytes, self.around.map.extent())?;
-        let mut learnt = Learnt::default();
-        for record in &frame.tiles {
-            learnt += self.around.map.join_tile(record.at, record.tile);
+        let heard = self.link.receive(bytes, &mut self.around.map)?;
+        self.learn(heard.learnt);
+        if let Some(status) = heard.status {
+            self.hear(heard.from, status);
         }
-        // What others told goes out again in turn, not at once.
-        self.around.map.take_changed();
-        let (own, now) = (self.around.position, self.around.now);
-        self.others
-            .hear(frame.sender, frame.status, Some(frame.sequence), own, now);
-        Ok(Heard {
-            from: frame.sender,
-            learnt: self.learn(learnt),
-        })
+        Ok(heard)
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {
-        let mut changed = self.around.map.take_changed();
-        changed.extend(&self.link.take_announced());
-        changed
+        self.link.take_changed(&mut self.around.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
@@ -462,7 +461,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn hear(&mut self, id: RobotId, status: Status) {
         if id != self.id {
             self.others
-                .hear(id, status, None, self.around.position, self.around.now);
+                .hear(id, status, self.around.position, self.around.now);
         }
     }
 
@@ -476,7 +475,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn adopt(&mut self, role: Role) {
         self.role = role;
-        self.pending = None;
+        self.stepping = false;
         self.far.cancel();
     }
 }

@@ -13,8 +13,6 @@ pub const MAX_OTHERS: usize = 15;
 pub(crate) struct Other {
     pub(crate) id: RobotId,
     pub(crate) status: Status,
-    /// Number of the last frame.
-    sequence: Option<u16>,
     heard_at: u32,
 }
 
@@ -35,31 +33,15 @@ impl Others {
         Self { list: Vec::new() }
     }
 
-    /// Takes in a status. One from a frame is ignored if it is not newer than the
-    /// last of its sender: repeated, late or replayed. Work: the list once.
-    pub(crate) fn hear(
-        &mut self,
-        id: RobotId,
-        status: Status,
-        sequence: Option<u16>,
-        own: Cell,
-        now: u32,
-    ) {
+    /// Takes in a status. Work: the list once.
+    pub(crate) fn hear(&mut self, id: RobotId, status: Status, own: Cell, now: u32) {
         let heard = Other {
             id,
             status,
-            sequence,
             heard_at: now,
         };
         if let Some(known) = self.list.iter_mut().find(|other| other.id == id) {
-            let is_newer = match (sequence, known.sequence) {
-                // In the half of the numbers that lies ahead.
-                (Some(new), Some(last)) => (new.wrapping_sub(last) as i16) > 0,
-                _ => true,
-            };
-            if is_newer {
-                *known = heard;
-            }
+            *known = heard;
             return;
         }
         if self.list.is_full() && !self.make_room(&heard, own) {
@@ -67,7 +49,7 @@ impl Others {
         }
         // There is room now; by id, so that ties fall the same way for everybody.
         let place = self.list.iter().take_while(|other| other.id < id).count();
-        let _ = self.list.insert(place, heard);
+        let _ = self.list.insert(place.min(self.list.len()), heard);
     }
 
     /// Forgets a robot that has stopped, or else the farthest, if it is farther
@@ -77,14 +59,11 @@ impl Others {
             let distance = other.status.position.distance_squared(own);
             (other.has_stopped(), distance)
         };
-        let least = self
-            .list
-            .iter()
-            .enumerate()
-            .max_by_key(|(_, other)| rank(other));
-        match least {
-            Some((index, other)) if rank(heard) < rank(other) => {
-                self.list.remove(index);
+        let least = self.list.iter().max_by_key(|other| rank(other));
+        match least.map(|other| (other.id, rank(other))) {
+            Some((id, worst)) if rank(heard) < worst => {
+                // Not `remove`, which panics for an index outside.
+                self.list.retain(|other| other.id != id);
                 true
             }
             _ => false,

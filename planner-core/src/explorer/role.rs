@@ -4,6 +4,7 @@
 //! radio. Where two bodies are in each other's way, the roles pass through each
 //! other by an exchange of bodies.
 
+use super::maybe::Maybe;
 use super::path::Path;
 use crate::cell::Cell;
 use crate::planner::{RobotId, Stop};
@@ -27,7 +28,7 @@ pub struct Role {
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
     pub(crate) used: u8,
-    pub(crate) stopped: Option<Stop>,
+    pub(crate) stopped: Maybe<Stop>,
 }
 
 impl Role {
@@ -37,7 +38,7 @@ impl Role {
             plan: None,
             since: 0,
             used: 0,
-            stopped: None,
+            stopped: Maybe::Nothing,
         }
     }
 
@@ -48,12 +49,12 @@ impl Role {
 
     /// Whether the role has stopped.
     pub const fn has_stopped(&self) -> bool {
-        self.stopped.is_some()
+        matches!(self.stopped, Maybe::Just(_))
     }
 
     /// The cell that the role goes to next from `here`.
     pub fn next_cell(&self, here: Cell) -> Option<Cell> {
-        let plan = self.plan.as_ref().filter(|_| self.stopped.is_none())?;
+        let plan = self.plan.as_ref().filter(|_| !self.has_stopped())?;
         Some(here.step(plan.path.first()?))
     }
 

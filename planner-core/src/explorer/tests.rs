@@ -203,7 +203,7 @@ fn run(scene: &Scene, limit: u32) -> Ended {
             }
         }
         for (robot, stop) in robots.iter().zip(&mut stops) {
-            *stop = robot.role.stopped;
+            *stop = robot.role.stopped.get();
         }
         ticks += 1;
     }

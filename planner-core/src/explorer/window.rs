@@ -102,59 +102,17 @@ pub(crate) struct Candidate {
 /// Bonus of a frontier cell for each cell between it and the nearest visited one.
 const LARGEST_BONUS: i32 = 8;
 
-/// The rows that the near decision works on: 1.2 kB, kept in place, off the stack.
-pub(crate) struct NearSearch {
-    window: Window,
-    frontier: Rows,
-    /// Bonus − 1 of every cell, a bit a plane.
-    bonus: [Rows; 3],
-    open: Rows,
-    /// Direction back to the robot, a bit a plane.
-    parent: [Rows; 2],
-    mine: Rows,
-    lower: Rows,
-    higher: Rows,
-}
+/// How far every cell of the window is from the visited ones: 1 to 8, less one, a
+/// bit a plane.
+pub(crate) struct Bonus([Rows; 3]);
 
-impl NearSearch {
-    pub(crate) const fn new() -> Self {
-        Self {
-            window: Window { x: 0, y: 0 },
-            frontier: [0; SIDE],
-            bonus: [[0; SIDE]; 3],
-            open: [0; SIDE],
-            parent: [[0; SIDE]; 2],
-            mine: [0; SIDE],
-            lower: [0; SIDE],
-            higher: [0; SIDE],
-        }
-    }
-
-    /// Looks at the map around the robot. Returns whether a frontier is in the
-    /// window; the searches find nothing otherwise.
-    pub(crate) fn load<const TW: usize, const TH: usize>(
-        &mut self,
-        around: &Surroundings<TW, TH>,
-        work: &mut u32,
-    ) -> bool {
-        self.window = Window::around(around.position);
-        *work += SIDE as u32;
-        self.frontier = self.window.load(|at| around.map.frontier(at));
-        if self.frontier.iter().all(|&row| row == 0) {
-            return false;
-        }
-        let visited = self.window.load(|at| around.map.tile(at).visited);
-        self.rate(visited);
-        *work += 10 * SIDE as u32;
-        true
-    }
-
-    /// Bonus of every cell: 1 + the number of times that the visited cells can
-    /// grow, by 4 and by 8 neighbours in turn (so in octagons, within 6 % of
-    /// Euclidean distance), before they cover it; at most 8.
-    fn rate(&mut self, visited: Rows) {
+impl Bonus {
+    /// 1 + the number of times that the visited cells can grow, by 4 and by 8
+    /// neighbours in turn (so in octagons, within 6 % of Euclidean distance),
+    /// before they cover a cell; at most 8.
+    fn of(visited: Rows) -> Self {
         let mut near = visited;
-        self.bonus = [[0; SIDE]; 3];
+        let mut planes = [[0; SIDE]; 3];
         for growth in 0..LARGEST_BONUS - 1 {
             let mut above = 0;
             for y in 0..SIDE {
@@ -172,7 +130,7 @@ impl NearSearch {
                 }
                 // Count the cells that are still not covered: a ripple-carry adder.
                 let mut carry = !grown;
-                for plane in &mut self.bonus {
+                for plane in &mut planes {
                     if let Some(row) = plane.get_mut(y) {
                         let sum = *row ^ carry;
                         carry &= *row;
@@ -181,16 +139,60 @@ impl NearSearch {
                 }
             }
         }
+        Self(planes)
     }
 
-    fn bonus_of(&self, row: usize, column: u32) -> i32 {
+    fn at(&self, row: usize, column: u32) -> i32 {
         let mut bonus = 1;
-        for (plane, value) in self.bonus.iter().zip([1, 2, 4]) {
+        for (plane, value) in self.0.iter().zip([1, 2, 4]) {
             if get(plane, row, column) {
                 bonus += value;
             }
         }
         bonus
+    }
+}
+
+/// The rows that the near decision works on: 0.9 kB, kept in place, off the stack.
+pub(crate) struct NearSearch {
+    window: Window,
+    frontier: Rows,
+    open: Rows,
+    /// Direction back to the robot, a bit a plane.
+    parent: [Rows; 2],
+    mine: Rows,
+    lower: Rows,
+    higher: Rows,
+}
+
+impl NearSearch {
+    pub(crate) const fn new() -> Self {
+        Self {
+            window: Window { x: 0, y: 0 },
+            frontier: [0; SIDE],
+            open: [0; SIDE],
+            parent: [[0; SIDE]; 2],
+            mine: [0; SIDE],
+            lower: [0; SIDE],
+            higher: [0; SIDE],
+        }
+    }
+
+    /// Looks at the map around the robot. `None` if no frontier is in the window.
+    pub(crate) fn load<const TW: usize, const TH: usize>(
+        &mut self,
+        around: &Surroundings<TW, TH>,
+        work: &mut u32,
+    ) -> Option<Bonus> {
+        self.window = Window::around(around.position);
+        *work += SIDE as u32;
+        self.frontier = self.window.load(|at| around.map.frontier(at));
+        if self.frontier.iter().all(|&row| row == 0) {
+            return None;
+        }
+        *work += 9 * SIDE as u32;
+        let visited = self.window.load(|at| around.map.tile(at).visited);
+        Some(Bonus::of(visited))
     }
 
     /// The best frontier that the robot is nearer to than anybody else, ties to
@@ -200,6 +202,7 @@ impl NearSearch {
         &mut self,
         around: &Surroundings<TW, TH>,
         aim: &Aim,
+        bonus: &Bonus,
         others: impl Iterator<Item = (Cell, bool)>,
         work: &mut u32,
     ) -> Option<Candidate> {
@@ -218,13 +221,13 @@ impl NearSearch {
                 set(sources, place);
             }
         }
-        self.flood(around.position, aim, work)
+        self.flood(around.position, aim, bonus, work)
     }
 
     /// Waves from everybody at once, a step a layer; each cell belongs to whoever
     /// reaches it first. Each layer looks at the rows beside those of its front,
     /// and each cell is in one front: at most 3 · 1024 rows.
-    fn flood(&mut self, own: Cell, aim: &Aim, work: &mut u32) -> Option<Candidate> {
+    fn flood(&mut self, own: Cell, aim: &Aim, bonus: &Bonus, work: &mut u32) -> Option<Candidate> {
         self.parent = [[0; SIDE]; 2];
         self.mine = [0; SIDE];
         set(&mut self.mine, self.window.place(own));
@@ -276,7 +279,7 @@ impl NearSearch {
                         .goal
                         .is_some_and(|goal| goal.chebyshev(self.window.cell(y, column)) <= 3);
                     let score = length as i32
-                        - self.bonus_of(y, column)
+                        - bonus.at(y, column)
                         - if near_goal { aim.hysteresis } else { 0 };
                     if best.is_none_or(|(least, ..)| score < least) {
                         best = Some((score, y, column, length));

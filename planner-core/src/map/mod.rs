@@ -2,7 +2,7 @@
 //! kept as cells become known.
 //!
 //! A *frontier* cell is known, free, and has an unknown 4-neighbour
-//! [Yamauchi1997]. Cells beyond the extent count as known obstacles, so the map
+//! \[Yamauchi1997\]. Cells beyond the extent count as known obstacles, so the map
 //! has no special edge.
 
 mod tile;

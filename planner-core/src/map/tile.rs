@@ -152,6 +152,14 @@ impl<const TH: usize> TileSet<TH> {
         }
     }
 
+    /// Every tile that a map of this many rows can have.
+    pub const fn full() -> Self {
+        Self {
+            rows: [u64::MAX; TH],
+            occupied: u64::MAX >> (64 - TH),
+        }
+    }
+
     /// Removes every tile. At most `TH` word writes.
     pub fn clear(&mut self) {
         *self = Self::new();

@@ -114,10 +114,27 @@ pub struct Heard {
     pub from: RobotId,
     /// What the map learnt.
     pub learnt: Learnt,
+    /// What the sender said of itself; `None` if a newer frame of it was heard
+    /// before: this one is late, a repetition or a replay.
+    pub status: Option<Status>,
+}
+
+/// Senders whose last sequence number is remembered.
+const SENDERS: usize = 16;
+/// Ticks without a newer frame after which a sender may start counting anew.
+const SILENCE: u16 = 256;
+
+/// The last frame heard of a sender.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Latest {
+    sender: RobotId,
+    sequence: u16,
+    /// Ticks ago.
+    age: u16,
 }
 
 /// One robot's end of the radio.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Link<const TH: usize> {
     config: LinkConfig,
     grid: GridId,
@@ -126,6 +143,7 @@ pub struct Link<const TH: usize> {
     outbox: Outbox<TH>,
     /// Bytes that may be sent now.
     credit: u16,
+    latest: Vec<Latest, SENDERS>,
 }
 
 impl<const TH: usize> Link<TH> {
@@ -138,6 +156,7 @@ impl<const TH: usize> Link<TH> {
             sequence: 0,
             outbox: Outbox::new(),
             credit: 0,
+            latest: Vec::new(),
         }
     }
 
@@ -157,16 +176,23 @@ impl<const TH: usize> Link<TH> {
             .credit
             .saturating_add(self.config.bytes_per_tick)
             .min(limit);
+        for latest in &mut self.latest {
+            latest.age = latest.age.saturating_add(1);
+        }
+        self.latest.retain(|latest| latest.age <= SILENCE);
     }
 
-    /// Tiles that the robot itself saw change: they are sent first.
-    pub fn announce(&mut self, tiles: &TileSet<TH>) {
-        self.outbox.add(tiles);
+    /// The robot has just looked: what changed on its map is sent first. What
+    /// others told goes out again in turn, not at once.
+    pub fn announce<const TW: usize>(&mut self, map: &mut Map<TW, TH>) {
+        self.outbox.add(&map.take_changed());
     }
 
-    /// The tiles that were announced and not sent yet, taken out.
-    pub fn take_announced(&mut self) -> TileSet<TH> {
-        self.outbox.take_fresh()
+    /// The tiles that changed since the last call, for media that carry whole maps.
+    pub fn take_changed<const TW: usize>(&mut self, map: &mut Map<TW, TH>) -> TileSet<TH> {
+        let mut changed = map.take_changed();
+        changed.extend(&self.outbox.take_fresh());
+        changed
     }
 
     /// Writes the next frame and returns its length, or `None` while the budget
@@ -207,15 +233,55 @@ impl<const TH: usize> Link<TH> {
         Some(length)
     }
 
-    /// Reads a frame, and nothing else.
+    /// Reads a frame and joins its tiles into the map. Work: two tiles.
     ///
     /// # Errors
-    /// See [`FrameError`].
-    pub fn receive(&self, bytes: &[u8], extent: Extent) -> Result<Frame, FrameError> {
-        let frame = Frame::decode(bytes, self.config.key.as_ref(), self.grid, extent)?;
+    /// See [`FrameError`]; nothing has changed then.
+    pub fn receive<const TW: usize>(
+        &mut self,
+        bytes: &[u8],
+        map: &mut Map<TW, TH>,
+    ) -> Result<Heard, FrameError> {
+        let frame = Frame::decode(bytes, self.config.key.as_ref(), self.grid, map.extent())?;
         if frame.sender == self.id {
             return Err(FrameError::Own);
         }
-        Ok(frame)
+        let mut learnt = Learnt::default();
+        for record in &frame.tiles {
+            learnt += map.join_tile(record.at, record.tile);
+        }
+        map.take_changed();
+        let is_news = self.is_news(frame.sender, frame.sequence);
+        Ok(Heard {
+            from: frame.sender,
+            learnt,
+            status: is_news.then_some(frame.status),
+        })
+    }
+
+    /// Whether a sender's number lies in the half of all numbers that follow its
+    /// last one, which it then becomes. Of more than [`SENDERS`] senders some are
+    /// forgotten, and believed.
+    fn is_news(&mut self, sender: RobotId, sequence: u16) -> bool {
+        let heard = Latest {
+            sender,
+            sequence,
+            age: 0,
+        };
+        if let Some(latest) = self.latest.iter_mut().find(|of| of.sender == sender) {
+            let is_news = (sequence.wrapping_sub(latest.sequence) as i16) > 0;
+            if is_news {
+                *latest = heard;
+            }
+            return is_news;
+        }
+        if self.latest.is_full() {
+            if let Some(oldest) = self.latest.iter_mut().max_by_key(|of| of.age) {
+                *oldest = heard;
+            }
+            return true;
+        }
+        let _ = self.latest.push(heard);
+        true
     }
 }

@@ -4,7 +4,7 @@ use crate::map::{TileIndex, TileSet};
 
 /// Tiles to send: what was newly seen first, then the same once more, then every
 /// tile in turn, for those who missed it or came late.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outbox<const TH: usize> {
     fresh: TileSet<TH>,
     again: TileSet<TH>,

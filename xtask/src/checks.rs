@@ -1,0 +1,251 @@
+//! Every check, in the order in which they run: quick ones first.
+
+use std::time::{Duration, Instant};
+
+use anyhow::{Result, bail};
+
+use crate::shell::{cargo, command};
+use crate::{documents, firmware, install};
+
+/// One thing that must hold.
+#[derive(Debug)]
+pub(crate) struct Check {
+    name: &'static str,
+    title: &'static str,
+    /// Returns a remark for the summary, or nothing.
+    run: fn() -> Result<String>,
+}
+
+const CHECKS: &[Check] = &[
+    Check {
+        name: "format",
+        title: "the sources are formatted",
+        run: || cargo(["fmt", "--all", "--check"]).run().map(nothing),
+    },
+    Check {
+        name: "clippy",
+        title: "clippy has no complaints",
+        run: || {
+            cargo([
+                "clippy",
+                "--workspace",
+                "--all-targets",
+                "--locked",
+                "--",
+                "-Dwarnings",
+            ])
+            .run()
+            .map(nothing)
+        },
+    },
+    Check {
+        name: "clippy-features",
+        title: "nor with every feature of planner-core",
+        run: || {
+            cargo([
+                "clippy",
+                "-p=planner-core",
+                "--all-features",
+                "--",
+                "-Dwarnings",
+            ])
+            .run()
+            .map(nothing)
+        },
+    },
+    Check {
+        name: "clippy-chip",
+        title: "nor with the image for the chip",
+        run: || {
+            install::target(firmware::TARGET)?;
+            cargo([
+                "clippy",
+                "-p=firmware",
+                "--lib",
+                "--bins",
+                "--examples",
+                "--target",
+                firmware::TARGET,
+            ])
+            .args(["--", "-Dwarnings"])
+            .run()
+            .map(nothing)
+        },
+    },
+    Check {
+        name: "doc",
+        title: "the documentation builds without warnings",
+        run: || {
+            cargo(["doc", "--workspace", "--no-deps"])
+                .env("RUSTDOCFLAGS", "-Dwarnings")
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
+        name: "test",
+        title: "unit, property, cross-crate and documentation tests",
+        run: || {
+            cargo(["test", "--workspace", "--locked", "--no-fail-fast"])
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
+        name: "test-keyed",
+        title: "planner-core's tests with signed frames",
+        run: || {
+            cargo(["test", "-p=planner-core", "--features=keyed"])
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
+        name: "commands",
+        title: "the commands in the documents exist",
+        run: documents::check,
+    },
+    Check {
+        name: "targets",
+        title: "planner-core builds for every chip, with and without its features",
+        run: core_builds_for_chips,
+    },
+    Check {
+        name: "firmware",
+        title: "the image explores its map in the emulator, within the budget",
+        run: firmware::explores,
+    },
+    Check {
+        name: "stack-overflow",
+        title: "a stack overflow faults at once",
+        run: firmware::stack_overflow_faults,
+    },
+    Check {
+        name: "too-large",
+        title: "an image that does not fit in RAM does not link",
+        run: firmware::too_large_is_refused,
+    },
+    Check {
+        name: "no-panic",
+        title: "no path from planner-core leads to a panic",
+        run: firmware::has_no_panic,
+    },
+    Check {
+        name: "miri",
+        title: "planner-core's unit tests under Miri",
+        run: miri,
+    },
+];
+
+/// The check of that name.
+pub(crate) fn named(name: &str) -> Result<&'static Check, String> {
+    CHECKS
+        .iter()
+        .find(|check| check.name == name)
+        .ok_or_else(|| "no such check; `cargo xtask test --list` names them".to_owned())
+}
+
+/// Prints the names of all checks.
+pub(crate) fn list() {
+    for check in CHECKS {
+        println!("{:<16} {}", check.name, check.title);
+    }
+}
+
+/// Runs the given checks, or all of them, and sums up.
+pub(crate) fn run(only: &[&'static Check]) -> Result<()> {
+    let chosen: Vec<&Check> = match only {
+        [] => CHECKS.iter().collect(),
+        only => only.to_vec(),
+    };
+    let begin = Instant::now();
+    let results: Vec<_> = chosen
+        .iter()
+        .zip(1..)
+        .map(|(check, number)| {
+            println!(
+                "\n=== {number}/{} {}: {}",
+                chosen.len(),
+                check.name,
+                check.title
+            );
+            let begin = Instant::now();
+            let result = (check.run)();
+            if let Err(error) = &result {
+                println!("FAILED: {error:#}");
+            }
+            (*check, begin.elapsed(), result)
+        })
+        .collect();
+
+    println!("\n=== summary");
+    for (check, time, result) in &results {
+        let (verdict, remark) = match result {
+            Ok(remark) => ("ok", remark.as_str()),
+            Err(_) => ("FAILED", ""),
+        };
+        println!(
+            "{verdict:<6} {:>7}  {:<16} {remark}",
+            seconds(*time),
+            check.name
+        );
+    }
+    let failed: Vec<&str> = results
+        .iter()
+        .filter(|(_, _, result)| result.is_err())
+        .map(|(check, ..)| check.name)
+        .collect();
+    println!("{} checks in {}", results.len(), seconds(begin.elapsed()));
+    if !failed.is_empty() {
+        bail!(
+            "{} failed; run one again with `cargo xtask test --only {}`",
+            failed.join(", "),
+            failed[0]
+        );
+    }
+    Ok(())
+}
+
+fn core_builds_for_chips() -> Result<String> {
+    const CHIPS: [&str; 4] = [
+        "thumbv6m-none-eabi",
+        firmware::TARGET,
+        "thumbv8m.main-none-eabihf",
+        "riscv32imac-unknown-none-elf",
+    ];
+    for chip in CHIPS {
+        install::target(chip)?;
+        // Built, not checked: only then are the assertions on sizes evaluated.
+        let build = || cargo(["build", "--release", "-p=planner-core", "--target", chip]);
+        build().run()?;
+        build().arg("--all-features").run()?;
+    }
+    Ok(CHIPS.join(", "))
+}
+
+/// Miri is a thousand times slower than the chip: few cases of each property, and
+/// only the modules that pack bits and bytes.
+fn miri() -> Result<String> {
+    /// Take minutes even so.
+    const SKIPPED: [&str; 1] = ["sight::tests::a_scan_agrees_with_geometry"];
+
+    install::miri()?;
+    command("rustup")
+        .args(["run", install::NIGHTLY, "cargo", "miri", "test"])
+        .args(["-p=planner-core", "--lib", "--"])
+        .args(["cell::", "map::", "radio::", "sight::"])
+        .args(SKIPPED.map(|test| format!("--skip={test}")))
+        .env("PROPTEST_CASES", "2")
+        // proptest reads the clock and its file of past failures.
+        .env("MIRIFLAGS", "-Zmiri-disable-isolation")
+        .run()?;
+    Ok(format!("without {}", SKIPPED.join(", ")))
+}
+
+fn nothing((): ()) -> String {
+    String::new()
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.1} s", time.as_secs_f64())
+}

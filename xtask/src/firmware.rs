@@ -1,0 +1,243 @@
+//! The image for the chip: built, measured, run in the emulator.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::{Context, Result, anyhow, bail};
+use object::{Object, ObjectSegment, ObjectSymbol};
+
+use crate::shell::{self, Command, Output, cargo, command};
+use crate::{budget, install};
+
+/// The chip's target: Cortex-M4 with its floating-point unit.
+pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// An emulated STM32F405.
+const MACHINE: &str = "netduinoplus2";
+
+/// Many times what any of the images takes.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// A linked image.
+pub(crate) struct Image {
+    path: PathBuf,
+    /// Bytes of flash: code, constants, initial values.
+    flash: u64,
+    /// Bytes of RAM that statics take; the stack is apart.
+    statics: u64,
+}
+
+impl fmt::Display for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "flash:      {:>7} bytes", self.flash)?;
+        writeln!(f, "static RAM: {:>7} bytes", self.statics)?;
+        write!(f, "image:      {}", self.path.display())
+    }
+}
+
+/// Builds the image that explores.
+pub(crate) fn build() -> Result<Image> {
+    install::target(TARGET)?;
+    cargo_build().arg("--bin=firmware").run()?;
+    let path = path("firmware");
+    measure(&path).with_context(|| format!("{}: cannot be measured", path.display()))
+}
+
+/// Builds the image, runs it and shows its report.
+pub(crate) fn build_and_run() -> Result<()> {
+    let image = build()?;
+    install::qemu()?;
+    let output = emulate("firmware")?;
+    print!("{}", output.stdout);
+    eprint!("{}", output.stderr);
+    println!("{image}");
+    if !output.success() {
+        bail!("the image did not explore completely");
+    }
+    Ok(())
+}
+
+/// The image explores its map completely, within the budget. Returns what it took.
+pub(crate) fn explores() -> Result<String> {
+    let image = build()?;
+    install::qemu()?;
+    let output = emulate("firmware")?;
+    print!("{}", output.stdout);
+    let stop = entry(&output.stdout, "stop");
+    if !output.success() || stop != Some("complete") {
+        bail!(
+            "the image ended with status {:?} and stop reason {stop:?}, not 0 and \"complete\"\n{}",
+            output.status,
+            output.stderr
+        );
+    }
+    let stack = entry(&output.stdout, "peak stack bytes")
+        .and_then(|bytes| bytes.parse().ok())
+        .context("the image does not report `peak stack bytes`")?;
+    let measured = [
+        ("firmware_flash_bytes", image.flash),
+        ("firmware_static_bytes", image.statics),
+        ("firmware_peak_stack_bytes", stack),
+    ];
+    let within = budget::Budget::read(shell::root())
+        .and_then(|budget| budget.check("firmware_", &measured))
+        .map_err(|error| anyhow!(error))?;
+    for line in &within {
+        println!("{line}");
+    }
+    Ok(format!(
+        "flash {}, static RAM {}, stack {stack} bytes",
+        image.flash, image.statics
+    ))
+}
+
+/// An image that runs out of stack faults at once, and says so.
+pub(crate) fn stack_overflow_faults() -> Result<String> {
+    install::target(TARGET)?;
+    install::qemu()?;
+    cargo_build().arg("--example=stack-overflow").run()?;
+    let output = emulate("examples/stack-overflow")?;
+    print!("{}", output.stderr);
+    if output.status != Some(1) || !output.stderr.contains("the stack overflowed") {
+        bail!(
+            "an image that recurses without end must report \"the stack overflowed\" and end \
+             with status 1; it ended with {:?}\nLook at STACK in memory-layout.x.",
+            output.status
+        );
+    }
+    Ok(String::new())
+}
+
+/// An image that does not fit in RAM does not link, and is told why.
+pub(crate) fn too_large_is_refused() -> Result<String> {
+    must_not_link(
+        "too-large",
+        "ERROR(memory-layout.x): the statics of the image do not fit in RAM",
+    )
+}
+
+/// No path from planner-core leads to a panic: an image that would need the
+/// panic handler does not link.
+pub(crate) fn has_no_panic() -> Result<String> {
+    must_not_link("no-panic-control", NO_PANIC)?;
+    let output = show(cargo_build().arg("--example=no-panic"))?;
+    if output.success() {
+        return Ok(String::new());
+    }
+    eprint!("{}", output.stderr);
+    if output.stderr.contains(NO_PANIC) {
+        show_who_panics()?;
+    }
+    bail!("planner-core can panic, or its proof does not build; see the linker's messages above")
+}
+
+/// Links the proof with a handler at address 0, asks the linker who needs it, and
+/// prints the chains of callers. Inlined callers are not named; `llvm-addr2line -i`
+/// on the address of the call names them.
+fn show_who_panics() -> Result<()> {
+    let output = show(
+        cargo([
+            "rustc",
+            "--profile=firmware",
+            "-p=firmware",
+            "--target",
+            TARGET,
+        ])
+        .args(["--example=no-panic", "--", "-Wlinker-messages"])
+        .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
+        .arg("-Clink-arg=--why-live=*9panicking*"),
+    )?;
+    for line in output.stderr.lines() {
+        if let Some((before, symbol)) = line.rsplit_once(":(") {
+            let arrow = if before.contains(">>>") {
+                "  called by"
+            } else {
+                "reachable:"
+            };
+            println!("{arrow} {}", symbol.trim_end_matches(')'));
+        }
+    }
+    Ok(())
+}
+
+/// The symbol that only a panic would need.
+const NO_PANIC: &str = "undefined symbol: a_panic_is_reachable";
+
+fn must_not_link(example: &str, reason: &str) -> Result<String> {
+    install::target(TARGET)?;
+    let output = show(cargo_build().arg(format!("--example={example}")))?;
+    if output.success() {
+        bail!("the example {example} links, and must not");
+    }
+    if !output.stderr.contains(reason) {
+        eprint!("{}", output.stderr);
+        bail!("the example {example} fails to link, but not with \"{reason}\"");
+    }
+    println!("does not link, as it must: {reason}");
+    Ok(String::new())
+}
+
+fn show(command: Command) -> Result<Output> {
+    println!("$ {command}");
+    command.output()
+}
+
+fn cargo_build() -> Command {
+    cargo([
+        "build",
+        "--profile=firmware",
+        "-p=firmware",
+        "--target",
+        TARGET,
+    ])
+}
+
+fn path(image: &str) -> PathBuf {
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
+    shell::root()
+        .join(target)
+        .join(TARGET)
+        .join("firmware")
+        .join(image)
+}
+
+fn emulate(image: &str) -> Result<Output> {
+    let run = command(install::QEMU)
+        .args([
+            "-machine",
+            MACHINE,
+            "-nographic",
+            "-monitor",
+            "none",
+            "-serial",
+            "none",
+        ])
+        .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
+        .arg(path(image));
+    println!("$ {run}");
+    run.output_within(LIMIT)
+}
+
+fn measure(path: &PathBuf) -> Result<Image> {
+    let bytes = std::fs::read(path)?;
+    let elf = object::File::parse(&*bytes)?;
+    let address = |name: &str| {
+        elf.symbol_by_name(name)
+            .map(|symbol| symbol.address())
+            .with_context(|| format!("no symbol {name}; was it linked with memory-layout.x?"))
+    };
+    Ok(Image {
+        path: path.clone(),
+        flash: elf.segments().map(|segment| segment.file_range().1).sum(),
+        // RAM begins where the stack does.
+        statics: address("__euninit")? - address("_stack_start")?,
+    })
+}
+
+/// The value of a `key: value` line.
+fn entry<'a>(report: &'a str, key: &str) -> Option<&'a str> {
+    report
+        .lines()
+        .find_map(|line| line.strip_prefix(key)?.strip_prefix(": "))
+}

@@ -1,0 +1,114 @@
+//! Whatever a check needs and the machine lacks.
+//!
+//! Each function returns at once when the thing is there. Where it may not be
+//! installed from here, the error is the command to run.
+
+use anyhow::{Context, Result, bail};
+
+use crate::shell::{Command, command};
+
+/// The toolchain that Miri comes with.
+pub(crate) const NIGHTLY: &str = "nightly";
+
+/// The emulator of the chip.
+pub(crate) const QEMU: &str = "qemu-system-arm";
+
+/// The standard library of a target, for the toolchain of this project.
+pub(crate) fn target(triple: &str) -> Result<()> {
+    let rustup = || command("rustup").args(["target"]);
+    let installed = rustup().args(["list", "--installed"]).output().context(
+        "rustup manages the targets; install it from https://rustup.rs, \
+         or add the target to your toolchain yourself",
+    )?;
+    if installed.success() && installed.stdout.lines().any(|line| line == triple) {
+        return Ok(());
+    }
+    or_say(rustup().args(["add", triple]))
+}
+
+/// Miri, with the sources that it interprets.
+pub(crate) fn miri() -> Result<()> {
+    let toolchains = command("rustup").args(["toolchain", "list"]).output()?;
+    if !toolchains
+        .stdout
+        .lines()
+        .any(|line| line.starts_with(NIGHTLY))
+    {
+        return or_say(command("rustup").args([
+            "toolchain",
+            "install",
+            NIGHTLY,
+            "--profile=minimal",
+            "--component=miri,rust-src",
+        ]));
+    }
+    let components = command("rustup")
+        .args(["component", "list", "--installed", "--toolchain", NIGHTLY])
+        .output()?;
+    let has = |name: &str| components.stdout.lines().any(|line| line.starts_with(name));
+    if has("miri") && has("rust-src") {
+        return Ok(());
+    }
+    or_say(command("rustup").args([
+        "component",
+        "add",
+        "--toolchain",
+        NIGHTLY,
+        "miri",
+        "rust-src",
+    ]))
+}
+
+/// The emulator, from the system's package manager.
+pub(crate) fn qemu() -> Result<()> {
+    if command(QEMU)
+        .arg("--version")
+        .output()
+        .is_ok_and(|output| output.success())
+    {
+        return Ok(());
+    }
+    if command("apt-get").arg("--version").output().is_err() {
+        bail!(
+            "{QEMU} is missing, and only apt-get is known here; install QEMU's Arm \
+             emulator, for example `brew install qemu` or `dnf install qemu-system-arm`"
+        );
+    }
+    let is_root = command("id")
+        .arg("-u")
+        .output()
+        .is_ok_and(|id| id.stdout.trim() == "0");
+    let may_sudo = || {
+        command("sudo")
+            .args(["-n", "true"])
+            .output()
+            .is_ok_and(|it| it.success())
+    };
+    let prefix: &[&str] = match () {
+        () if is_root => &[],
+        () if may_sudo() => &["sudo", "-n"],
+        () => bail!(
+            "{QEMU} is missing, and installing it needs your password; \
+             run `sudo apt-get install -y --no-install-recommends {QEMU}`"
+        ),
+    };
+    let apt = |arguments: &[&str]| {
+        let mut words = prefix.iter().chain(&["apt-get"]).chain(arguments).copied();
+        let program = words.next().expect("there is at least apt-get");
+        command(program)
+            .args(words)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+    };
+    let install = || apt(&["install", "-y", "--no-install-recommends", QEMU]);
+    // A new machine has no package lists yet.
+    install().run().or_else(|_| {
+        apt(&["update"]).run()?;
+        or_say(install())
+    })
+}
+
+/// Runs an installing command; if that fails, the error tells to run it.
+fn or_say(install: Command) -> Result<()> {
+    let say = format!("cannot install what is missing; run `{install}`");
+    install.run().context(say)
+}

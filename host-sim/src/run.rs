@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use planner_core::{Cell, Extent, RobotId, Stop, sight};
+use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::{Cell, Extent, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
-use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Violation};
-use crate::medium::Ideal;
+use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Sent, Violation};
+use crate::medium::{AirFaults, MediumKind};
 use crate::planners::PlannerKind;
 use crate::sensor::Sensor;
 use crate::trace::{Record, Trace};
@@ -25,17 +26,24 @@ pub struct Scenario {
     pub planner: PlannerKind,
     /// Sensor range in cells, 1 to 15.
     pub range: u8,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
     /// Ticks between two exchanges among robots; 0: never.
     pub sync: u32,
+    /// Bytes that a robot may send by radio in a tick on average. Less than a
+    /// frame: it sends one every few ticks.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
+    /// What else goes wrong in the air.
+    pub air: AirFaults,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell holds at most one robot.
     pub solid: bool,
     /// The run ends after this many ticks.
     pub max_ticks: u32,
-    /// What goes wrong.
+    /// What goes wrong with robots and cells.
     pub faults: Faults,
 }
 
@@ -49,8 +57,13 @@ pub enum ScenarioError {
     #[error("a sensor range of {0} cells; expected 1 to {max}", max = sight::MAX_RADIUS)]
     Range(u8),
     /// See the message.
-    #[error("a loss of {0}; expected 0 (none) to 1 (all)")]
-    Loss(f64),
+    #[error("a share of {share} for {name}; expected 0 (none) to 1 (all)")]
+    Share {
+        /// Of what.
+        name: &'static str,
+        /// How much.
+        share: f64,
+    },
     /// See the message.
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start {
@@ -72,9 +85,9 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// A scenario with the defaults: sensor range 5, exchange in every tick, no
-    /// loss, shared cells, seed 0, no faults, and ticks enough for any planner
-    /// that gets anywhere.
+    /// A scenario with the defaults: sensor range 5, the ideal medium with an
+    /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
+    /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
         let max_ticks = default_max_ticks(&world.reachable(&starts));
         Self {
@@ -82,8 +95,11 @@ impl Scenario {
             starts,
             planner,
             range: 5,
+            medium: MediumKind::Ideal,
             sync: 1,
+            byte_budget: MAX_LEN as u16,
             loss: 0.0,
+            air: AirFaults::default(),
             seed: 0,
             solid: false,
             max_ticks,
@@ -103,8 +119,14 @@ impl Scenario {
         if !(1..=sight::MAX_RADIUS).contains(&self.range) {
             return Err(ScenarioError::Range(self.range));
         }
-        if !(0.0..=1.0).contains(&self.loss) {
-            return Err(ScenarioError::Loss(self.loss));
+        for (name, share) in [
+            ("loss", self.loss),
+            ("duplication", self.air.duplication),
+            ("corruption", self.air.corruption),
+        ] {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(ScenarioError::Share { name, share });
+            }
         }
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
@@ -171,6 +193,8 @@ pub struct RobotOutcome {
     pub cells_missed: u32,
     /// Work of its planner over the run.
     pub work: u64,
+    /// What it sent by radio over the run.
+    pub sent: Sent,
     /// Why it stopped; `None` if it did not.
     pub stop: Option<Stop>,
     /// Whether it lived to the end of the run.
@@ -241,19 +265,27 @@ pub fn fleet<const TW: usize, const TH: usize>(
 ) -> Fleet<TW, TH> {
     let extent = scenario.world.extent();
     let rules = Rules {
-        sync: scenario.sync,
         solid: scenario.solid,
         faults: scenario.faults.clone(),
     };
-    let planners = scenario.starts.iter().zip(0..).map(|(&start, id)| {
-        let planner = scenario
-            .planner
-            .build(RobotId(id), scenario.range, extent, start)
-            .expect("the compiled size holds the world");
-        (planner, start)
+    let link = LinkConfig {
+        bytes_per_tick: scenario.byte_budget,
+        ..LinkConfig::new()
+    };
+    let (planner, range) = (scenario.planner, scenario.range);
+    let build = Box::new(move |id, start| {
+        planner
+            .build(id, range, extent, start, link)
+            .expect("the compiled size holds the world")
     });
-    let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
-    Fleet::new(sensor, medium, rules, planners)
+    let medium = scenario.medium.build(
+        scenario.sync,
+        scenario.loss,
+        scenario.air.clone(),
+        scenario.seed,
+        scenario.world.clone(),
+    );
+    Fleet::new(sensor, medium, rules, build, &scenario.starts)
 }
 
 /// Runs a checked scenario on maps of `TW`×`TH` tiles. The result does not
@@ -311,6 +343,7 @@ impl Book {
                     cells_known: 0,
                     cells_missed: 0,
                     work: 0,
+                    sent: Sent::default(),
                     stop: None,
                     alive: true,
                 };
@@ -339,6 +372,8 @@ impl Book {
             }
             let noted = &mut self.outcome.robots[index];
             noted.work += u64::from(step.work);
+            noted.sent.frames += step.sent.frames;
+            noted.sent.bytes += step.sent.bytes;
             noted.stop = None;
             match step.deed {
                 Deed::Moved(_) => noted.steps += 1,

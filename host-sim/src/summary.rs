@@ -3,6 +3,7 @@
 use planner_core::Stop;
 use serde::Serialize;
 
+use crate::medium::{AirFaults, MediumKind};
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome, Scenario};
 
@@ -38,10 +39,16 @@ pub struct Summary {
     pub planner: PlannerKind,
     /// Sensor range in cells.
     pub range: u8,
+    /// What carried what robots told each other.
+    pub medium: MediumKind,
     /// Ticks between two exchanges; 0: never.
     pub sync: u32,
+    /// Bytes that a robot might send by radio in a tick on average.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
+    /// What else went wrong in the air.
+    pub air: AirFaults,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell held at most one robot.
@@ -65,6 +72,10 @@ pub struct RobotSummary {
     pub cells_missed: u32,
     /// Work of its planner over the run.
     pub work: u64,
+    /// Frames sent by radio.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
     /// `complete`, `enclosed`, `blocked`, `back-at-start`, `no-trace`; `null`
     /// if it had not stopped.
     pub stop: Option<&'static str>,
@@ -93,8 +104,11 @@ impl Summary {
             map: scenario.world.name().into(),
             planner: scenario.planner,
             range: scenario.range,
+            medium: scenario.medium,
             sync: scenario.sync,
+            byte_budget: scenario.byte_budget,
             loss: scenario.loss,
+            air: scenario.air.clone(),
             seed: scenario.seed,
             solid: scenario.solid,
             robots: scenario
@@ -116,6 +130,8 @@ impl RobotSummary {
             cells_known: robot.cells_known,
             cells_missed: robot.cells_missed,
             work: robot.work,
+            frames_sent: robot.sent.frames,
+            bytes_sent: robot.sent.bytes,
             stop: robot.stop.map(stop_name),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             alive: robot.alive,

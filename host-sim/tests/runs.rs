@@ -115,12 +115,12 @@ fn a_closed_cell_blocks_until_it_opens() {
     let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
     scenario.range = 2;
     scenario.faults = Faults {
-        deaths: Vec::new(),
         closures: vec![Closure {
             cell,
             from: 0,
             until: 30,
         }],
+        ..Faults::default()
     };
     let (outcome, trace) = run(&scenario);
     assert!(outcome.robots[0].blocked_steps > 0);
@@ -165,7 +165,13 @@ fn a_scenario_out_of_range_is_an_error() {
         run::run(&scenario, Options::default()).unwrap_err()
     };
     assert_eq!(check(&|s| s.range = 16), ScenarioError::Range(16));
-    assert_eq!(check(&|s| s.loss = 1.5), ScenarioError::Loss(1.5));
+    assert_eq!(
+        check(&|s| s.loss = 1.5),
+        ScenarioError::Share {
+            name: "loss",
+            share: 1.5
+        }
+    );
     assert_eq!(check(&|s| s.starts.clear()), ScenarioError::Robots(0));
     let outside = Cell::new(-1, 0);
     let error = check(&|s| s.starts[1] = outside);

@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use planner_core::map::TileIndex;
+use planner_core::radio::LinkConfig;
 use planner_core::{Map, RobotId, Status, TileSet};
 use proptest::prelude::*;
 
-use super::ideal::Loss;
-use super::{Ideal, Medium};
+use super::air::Air;
+use super::{AirFaults, Medium, MediumKind, Reach};
 use crate::fleet::{Death, Faults, Fleet, Robot, Rules};
 use crate::planners::PlannerKind;
 use crate::sensor::Sensor;
@@ -17,12 +18,16 @@ const SIDE: usize = 4;
 
 /// Every receiver joins everything that every sender knew before the exchange.
 struct WholeMaps {
-    loss: Loss,
+    air: Air,
+    sync: u32,
     all: TileSet<SIDE>,
 }
 
 impl Medium<SIDE, SIDE> for WholeMaps {
-    fn exchange(&mut self, robots: &mut [Robot<SIDE, SIDE>]) {
+    fn exchange(&mut self, tick: u32, robots: &mut [Robot<SIDE, SIDE>]) {
+        if self.sync == 0 || !tick.is_multiple_of(self.sync) {
+            return;
+        }
         let told: Vec<(RobotId, Status, Map<SIDE, SIDE>)> = robots
             .iter()
             .filter(|robot| robot.alive)
@@ -35,8 +40,9 @@ impl Medium<SIDE, SIDE> for WholeMaps {
             })
             .collect();
         for robot in robots.iter_mut().filter(|robot| robot.alive) {
+            let to = (robot.id, robot.position);
             for (id, status, map) in &told {
-                if *id != robot.id && !self.loss.strikes() {
+                if *id != robot.id && self.air.carries(tick, (*id, status.position), to) {
                     robot.planner.join(map, &self.all);
                     robot.planner.hear(*id, *status);
                 }
@@ -45,13 +51,12 @@ impl Medium<SIDE, SIDE> for WholeMaps {
     }
 }
 
-fn whole_maps(loss: f64, seed: u64) -> Box<dyn Medium<SIDE, SIDE>> {
+fn whole_maps(air: Air, sync: u32) -> Box<dyn Medium<SIDE, SIDE>> {
     let mut all = TileSet::new();
     for (y, x) in (0..SIDE as u8).flat_map(|y| (0..SIDE as u8).map(move |x| (y, x))) {
         all.insert(TileIndex::new(x, y));
     }
-    let loss = Loss::new(loss, seed);
-    Box::new(WholeMaps { loss, all })
+    Box::new(WholeMaps { air, sync, all })
 }
 
 proptest! {
@@ -65,28 +70,30 @@ proptest! {
         loss in prop::sample::select(vec![0.0, 0.3, 0.9, 1.0]),
         death in 0u32..60,
         explorer in any::<bool>(),
+        reach in prop::sample::select(vec![Reach::Everywhere, Reach::Cells(6), Reach::LineOfSight]),
     ) {
         let world = Arc::new(generate(Family::Cave, 30, 27, seed).unwrap());
         let starts = world.place(robots, &Starts::Random(seed), false).unwrap();
         let planner = if explorer { PlannerKind::Explorer } else { PlannerKind::Closest };
         let rules = Rules {
-            sync,
             solid: false,
             faults: Faults {
                 deaths: vec![Death { robot: RobotId(0), tick: death }],
-                closures: Vec::new(),
+                ..Faults::default()
             },
         };
+        let faults = AirFaults { reach, ..AirFaults::default() };
         let fleet = |medium| {
-            let planners = starts.iter().zip(0..).map(|(&start, id)| {
-                let planner = planner.build(RobotId(id), 4, world.extent(), start).unwrap();
-                (planner, start)
+            let extent = world.extent();
+            let build = Box::new(move |id, start| {
+                planner.build(id, 4, extent, start, LinkConfig::new()).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
-            Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), planners)
+            Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), build, &starts)
         };
-        let mut fast = fleet(Box::new(Ideal::new(loss, seed)));
-        let mut slow = fleet(whole_maps(loss, seed));
+        let mut fast =
+            fleet(MediumKind::Ideal.build(sync, loss, faults.clone(), seed, world.clone()));
+        let mut slow = fleet(whole_maps(Air::new(faults, loss, seed, world.clone()), sync));
         for tick in 0..120 {
             fast.tick();
             slow.tick();

@@ -3,7 +3,8 @@ use std::sync::Arc;
 use planner_core::{Cell, Direction, RobotId};
 
 use super::*;
-use crate::fleet::{Closure, Death, Faults};
+use crate::fleet::{Arrival, Closure, Death, Faults, Restart};
+use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::run::{Options, run};
 use crate::world::{Family, Starts, generate};
@@ -13,6 +14,13 @@ fn trace() -> Trace {
     let starts = world.place(3, &Starts::Center, false).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Closest);
     scenario.loss = 0.3;
+    scenario.medium = MediumKind::Radio;
+    scenario.air = AirFaults {
+        reach: Reach::Cells(20),
+        delay: 3,
+        corruption: 0.1,
+        ..AirFaults::default()
+    };
     scenario.seed = u64::MAX;
     scenario.faults = Faults {
         deaths: vec![Death {
@@ -23,6 +31,14 @@ fn trace() -> Trace {
             cell: Cell::new(9, 9),
             from: 3,
             until: 50,
+        }],
+        arrivals: vec![Arrival {
+            robot: RobotId(2),
+            tick: 7,
+        }],
+        restarts: vec![Restart {
+            robot: RobotId(1),
+            tick: 90,
         }],
     };
     let options = Options {
@@ -64,8 +80,8 @@ fn a_damaged_file_is_an_error_that_says_where() {
     assert!(error(&broken).starts_with("line 4"), "{}", error(&broken));
     let edited = text.replacen("\n0,1,", "\n0,2,", 1);
     assert!(error(&edited).contains("digest"), "{}", error(&edited));
-    let newer = text.replacen("\"version\":1", "\"version\":2", 1);
-    assert!(error(&newer).contains("version 2"), "{}", error(&newer));
+    let newer = text.replacen("\"version\":2", "\"version\":3", 1);
+    assert!(error(&newer).contains("version 3"), "{}", error(&newer));
     let world = text.replacen("[\"#", "[\"##", 1);
     assert!(error(&world).contains("row 2"), "{}", error(&world));
 }
@@ -80,11 +96,16 @@ fn the_bytes_of_a_record_are_as_documented() {
         goal: None,
         known: 7,
         work: 256,
+        sent: Sent {
+            frames: 1,
+            bytes: 55,
+        },
     };
     assert_eq!(
         record.bytes(),
         [
-            4, 3, 2, 1, 5, 6, 0, 254, 255, 3, 255, 255, 255, 255, 7, 0, 0, 0, 0, 1, 0, 0
+            4, 3, 2, 1, 5, 6, 0, 254, 255, 3, 255, 255, 255, 255, 7, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0,
+            0, 55, 0, 0, 0
         ]
     );
     assert_eq!(record.after(), Cell::new(6, -3));

@@ -156,6 +156,6 @@ fn compare(
         lossy: seen(&lossy) - seen(&ideal),
         bytes: each / f64::from(frames.ticks),
         bytes_total: each,
-        agreed: 0,
+        agreed: u32::from(frames.maps_agree()),
     })
 }

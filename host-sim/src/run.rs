@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
-use planner_core::{Cell, Extent, Stop, sight};
+use planner_core::{Cell, Extent, Map, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
@@ -191,6 +191,8 @@ pub struct RobotOutcome {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that another living robot's map holds and its own lacks, if it lives.
+    pub cells_unheard: u32,
     /// Work of its planner over the run.
     pub work: u64,
     /// What it sent by radio over the run.
@@ -205,6 +207,11 @@ impl Outcome {
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
+    }
+
+    /// Whether all living robots know the same cells in the end.
+    pub fn maps_agree(&self) -> bool {
+        self.robots.iter().all(|robot| robot.cells_unheard == 0)
     }
 
     /// Share of the seen cells that more than one robot saw with its own
@@ -342,6 +349,7 @@ impl Book {
                     blocked_steps: 0,
                     cells_known: 0,
                     cells_missed: 0,
+                    cells_unheard: 0,
                     work: 0,
                     sent: Sent::default(),
                     stop: None,
@@ -414,10 +422,12 @@ impl Book {
     ) -> (Outcome, Option<Trace>) {
         self.outcome.shared_cells = self.coverage.shared_cells();
         self.outcome.violations = fleet.violations().to_vec();
+        let unheard = unheard(fleet);
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
             noted.cells_known = robot.planner.map().known_cells();
+            noted.cells_unheard = unheard[usize::from(robot.id.0)];
             noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
         }
         let trace = self.records.map(|records| Trace::new(scenario, records));
@@ -438,4 +448,24 @@ fn missed<const TW: usize, const TH: usize>(
     } else {
         0
     }
+}
+
+/// Robot by robot, the cells that it lacks and another one alive knows.
+fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> {
+    let alive = || fleet.robots().iter().filter(|robot| robot.alive);
+    let mut all: Option<Box<Map<TW, TH>>> = None;
+    for robot in alive() {
+        match &mut all {
+            None => all = Some(Box::new(robot.planner.map().clone())),
+            Some(all) => {
+                all.join(robot.planner.map());
+            }
+        }
+    }
+    let known = all.map_or(0, |all| all.known_cells());
+    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
+    let robots = fleet.robots().iter();
+    robots
+        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
+        .collect()
 }

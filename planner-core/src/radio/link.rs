@@ -286,3 +286,6 @@ impl<const TH: usize> Link<TH> {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

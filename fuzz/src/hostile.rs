@@ -8,7 +8,7 @@ use planner_core::{Action, Activity, Cell, Extent, Map, Motion, Planner, RobotId
 
 type Robot = Explorer<3, 3>;
 
-/// Longer than any robot needs on a grid of 24×24 cells.
+/// Longer than any robot needs on a grid of 18×18 cells.
 const PATIENCE: u32 = 20_000;
 
 /// Lets one robot explore a small world while it is fed what `script` says, over
@@ -24,8 +24,8 @@ pub fn explore(script: &[u8]) {
         at: 0,
     };
     let extent = Extent::new(
-        u16::from(4 + script.byte() % 21),
-        u16::from(4 + script.byte() % 21),
+        u16::from(4 + script.byte() % 15),
+        u16::from(4 + script.byte() % 15),
     );
     let (density, seed, radius) = (script.byte() % 160, script.byte(), 1 + script.byte() % 8);
     let is_blocked = |cell: Cell| {
@@ -95,7 +95,7 @@ fn forged(kind: u8, script: &mut Script<'_>, extent: Extent) -> Frame {
     } = LinkConfig::new();
     let mut cell = || {
         let (x, y) = (script.byte(), script.byte());
-        Cell::new((x % 28).into(), (y % 28).into())
+        Cell::new((x % 22).into(), (y % 22).into())
     };
     let status = Status {
         position: cell(),

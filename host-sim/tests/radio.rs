@@ -86,21 +86,26 @@ fn the_budget_and_the_interval_limit_what_is_sent() {
 
 #[test]
 fn the_summary_says_why_maps_differ() {
+    let late = Arrival {
+        robot: RobotId(1),
+        tick: 59,
+    };
     let why = |change: &dyn Fn(&mut Scenario)| {
-        // Which obstacles a robot sees depends on the cells that it looks from.
-        let world = Arc::new(generate(Family::RandomObstacles, 40, 40, 3).unwrap());
-        let starts = world.place(2, &Starts::Random(1), false).unwrap();
-        let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
-        scenario.medium = MediumKind::Radio;
+        let mut scenario = scenario(3);
+        // From one start, robots that hear nothing all walk the same way; and in
+        // the end all know the whole world, whatever they were told.
+        scenario.starts = scenario.world.free_cells().step_by(300).take(3).collect();
+        scenario.max_ticks = 60;
         change(&mut scenario);
         let (summary, _) = summary(&scenario);
-        assert!(summary.complete && !summary.maps_agree);
+        assert!(!summary.maps_agree);
         assert!(summary.robots.iter().any(|robot| robot.cells_unheard > 0));
         summary.maps_differ_because.unwrap()
     };
     assert!(why(&|s| s.byte_budget = 0).contains("never spoke"));
     assert!(why(&|s| s.air.reach = Reach::Cells(1)).contains("reach"));
     assert!(why(&|s| s.loss = 1.0).contains("lost"));
+    assert!(why(&|s| s.faults.arrivals = vec![late]).contains("ended before"));
 }
 
 #[test]

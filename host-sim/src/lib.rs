@@ -10,6 +10,7 @@
 mod coverage;
 pub mod draw;
 pub mod fleet;
+pub mod live;
 pub mod medium;
 pub mod peers;
 pub mod planners;

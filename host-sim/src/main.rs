@@ -17,12 +17,21 @@ enum Command {
     Explore(command::Explore),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
+    /// Serve a map to robots that are processes of their own.
+    ///
+    /// Exit status: 0 every reachable cell was seen and every robot has stopped,
+    /// 1 something was left, 2 bad input.
+    World(command::World),
+    /// Be one robot in a served world; talks to the others by UDP.
+    Robot(command::Robot),
 }
 
 fn main() -> ExitCode {
     let done = match Command::parse() {
         Command::Explore(explore) => explore.run(),
         Command::Generate(generate) => generate.run(),
+        Command::World(world) => world.run(),
+        Command::Robot(robot) => robot.run(),
     };
     done.unwrap_or_else(|error| {
         eprintln!("error: {error}");

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::ExtentError;
+use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
@@ -37,7 +38,7 @@ pub enum PlannerKind {
 
 impl PlannerKind {
     /// The planner of robot `id`, which sees `range` cells far and starts at
-    /// `start` on a grid of `extent`.
+    /// `start` on a grid of `extent`, and uses the radio by `link`.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
@@ -47,19 +48,26 @@ impl PlannerKind {
         range: u8,
         extent: Extent,
         start: Cell,
+        link: LinkConfig,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         Ok(match self {
             Self::Explorer => {
+                let config = explorer::Config {
+                    link,
+                    ..explorer::Config::new()
+                };
                 let mut explorer = Box::new(Explorer::vacant());
-                explorer.reset(explorer::Config::new(), id, extent, start)?;
+                explorer.reset(config, id, extent, start)?;
                 explorer
             }
-            Self::LocalFrontiers => local_frontiers(false, id, extent, start)?,
-            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start)?,
-            Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
-            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
-            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
-            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
+            Self::LocalFrontiers => local_frontiers(false, id, extent, start, link)?,
+            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start, link)?,
+            Self::Closest => Box::new(Peer::new(Closest, id, extent, start, link)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start, link)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
+            Self::MinPosStrong => {
+                Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
+            }
         })
     }
 }
@@ -69,9 +77,11 @@ fn local_frontiers<const TW: usize, const TH: usize>(
     id: RobotId,
     extent: Extent,
     start: Cell,
+    link: LinkConfig,
 ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
     let config = local_frontiers::Config {
         second_chance,
+        link,
         ..Default::default()
     };
     let mut planner = Box::new(LocalFrontiers::vacant());

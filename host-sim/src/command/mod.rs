@@ -3,6 +3,7 @@
 mod explore;
 mod folder;
 mod generate;
+mod live;
 mod report;
 
 use std::error::Error;
@@ -10,6 +11,7 @@ use std::process::ExitCode;
 
 pub(crate) use explore::Explore;
 pub(crate) use generate::Generate;
+pub(crate) use live::{Robot, World};
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;

@@ -47,6 +47,7 @@ use crate::sight::Sighting;
 /// How an explorer decides. One configuration serves a whole fleet; none of it
 /// depends on the map's size or the number of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Perception radius of the robots, in cells: how far around a frontier cell
     /// others are taken to look when they have got there.

@@ -15,7 +15,7 @@ mod message;
 mod wire;
 
 pub use message::{
-    Answer, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, fingerprint,
+    Answer, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome, fingerprint,
 };
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 

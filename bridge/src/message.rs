@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use planner_core::map::{ExtentError, TileIndex};
-use planner_core::radio::{FrameError, Heard, TileRecord};
+use planner_core::radio::{FrameError, Heard, LinkConfig, TileRecord};
 use planner_core::{
     Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, explorer, local_frontiers,
 };
@@ -23,6 +23,16 @@ pub enum PlannerConfig {
     LocalFrontiers(local_frontiers::Config),
 }
 
+impl PlannerConfig {
+    /// How the planner uses the radio.
+    pub const fn link(&self) -> &LinkConfig {
+        match self {
+            Self::Explorer(config) => &config.link,
+            Self::LocalFrontiers(config) => &config.link,
+        }
+    }
+}
+
 /// What the simulator asks for: a verb of the planner, or something about it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[expect(
@@ -30,7 +40,7 @@ pub enum PlannerConfig {
     reason = "there is one at a time, and no heap on the chip"
 )]
 pub enum Request<'a> {
-    /// Sets up a planner. The first request; [`Reply::Ready`] or [`Reply::Refused`].
+    /// Sets up a planner. The first request; answered by a [`Welcome`].
     Start {
         /// Which one.
         planner: PlannerConfig,
@@ -61,8 +71,6 @@ pub enum Request<'a> {
     Join,
     /// What another robot told about itself; [`Reply::Done`].
     Hear(RobotId, Status),
-    /// [`Reply::Role`].
-    Role,
     /// [`Reply::Done`].
     Adopt(explorer::Role),
     /// [`Reply::Memory`].
@@ -71,7 +79,7 @@ pub enum Request<'a> {
     End,
 }
 
-/// What the image answers.
+/// What the image answers to any other request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Answer<'a> {
     /// Ticks of the image's clock that the planner's call took.
@@ -92,6 +100,8 @@ pub struct State {
     pub work: u32,
     /// [`fingerprint`] of its map.
     pub map: u32,
+    /// What the robot is about to do.
+    pub role: Option<explorer::Role>,
 }
 
 /// What a call returned.
@@ -101,10 +111,6 @@ pub struct State {
     reason = "there is one at a time, and no heap on the chip"
 )]
 pub enum Reply<'a> {
-    /// The planner is set up.
-    Ready(Hello),
-    /// The grid does not fit the image's map.
-    Refused(ExtentError),
     /// Nothing to say.
     Done,
     /// What was learnt.
@@ -118,10 +124,17 @@ pub enum Reply<'a> {
     Heard(Result<Heard, FrameError>),
     /// Tiles that changed.
     Changed(Rows),
-    /// What the robot is about to do.
-    Role(Option<explorer::Role>),
     /// What the image takes.
     Memory(Memory),
+}
+
+/// The answer to [`Request::Start`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Welcome {
+    /// The planner is set up.
+    Ready(Hello),
+    /// The grid does not fit the image's map; the image ends.
+    Refused(ExtentError),
 }
 
 /// Who answers.

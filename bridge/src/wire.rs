@@ -24,7 +24,7 @@ pub fn encode<'a>(
     Ok(&buffer[..HEADER + length])
 }
 
-/// Reads a message that [`Inbox::read`] returned.
+/// Reads the [`Inbox::message`].
 ///
 /// # Errors
 /// The bytes are no such message: the two sides are not built from one source.
@@ -35,6 +35,8 @@ pub fn decode<'a, T: Deserialize<'a>>(bytes: &'a [u8]) -> Result<T, postcard::Er
 /// Puts one message together from what a stream delivers, piece by piece.
 pub struct Inbox {
     buffer: [u8; MAX_MESSAGE],
+    /// Where the message ends.
+    end: usize,
 }
 
 /// Why there is no message.
@@ -66,6 +68,7 @@ impl Inbox {
     pub const fn new() -> Self {
         Self {
             buffer: [0; MAX_MESSAGE],
+            end: HEADER,
         }
     }
 
@@ -77,7 +80,8 @@ impl Inbox {
     pub fn read<E>(
         &mut self,
         mut read: impl FnMut(&mut [u8]) -> Result<usize, E>,
-    ) -> Result<&[u8], ReadError<E>> {
+    ) -> Result<(), ReadError<E>> {
+        self.end = HEADER;
         let mut filled = 0;
         let mut end = None;
         while end.is_none_or(|end| filled < end) {
@@ -95,7 +99,13 @@ impl Inbox {
                 end = Some(length);
             }
         }
-        Ok(&self.buffer[HEADER..filled])
+        self.end = filled;
+        Ok(())
+    }
+
+    /// The message that was read last, without its length.
+    pub fn message(&self) -> &[u8] {
+        &self.buffer[HEADER..self.end]
     }
 }
 
@@ -126,7 +136,8 @@ mod tests {
             place[..now.len()].copy_from_slice(now);
             rest = later;
             Ok(now.len())
-        })
+        })?;
+        Ok(inbox.message())
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use bridge::PlannerConfig;
 use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
@@ -36,6 +37,24 @@ pub enum PlannerKind {
 }
 
 impl PlannerKind {
+    /// How a robot is set up that sees `range` cells far and decides by itself, on
+    /// the host as on a chip. `None`: the planner has a view of all robots, and
+    /// only the host can run it.
+    pub fn on_chip(self, range: u8) -> Option<PlannerConfig> {
+        let local_frontiers = |second_chance| {
+            PlannerConfig::LocalFrontiers(local_frontiers::Config {
+                second_chance,
+                ..Default::default()
+            })
+        };
+        match self {
+            Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config::new(range))),
+            Self::LocalFrontiers => Some(local_frontiers(false)),
+            Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
+            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong => None,
+        }
+    }
+
     /// The planner of robot `id`, which sees `range` cells far and starts at
     /// `start` on a grid of `extent`.
     ///
@@ -48,14 +67,13 @@ impl PlannerKind {
         extent: Extent,
         start: Cell,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+        if let Some(config) = self.on_chip(range) {
+            return on_host(config, id, extent, start);
+        }
         Ok(match self {
-            Self::Explorer => {
-                let mut explorer = Box::new(Explorer::vacant());
-                explorer.reset(explorer::Config::new(range), id, extent, start)?;
-                explorer
+            Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {
+                unreachable!("planner-core has them")
             }
-            Self::LocalFrontiers => local_frontiers(false, id, extent, start)?,
-            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start)?,
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
             Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
@@ -64,19 +82,25 @@ impl PlannerKind {
     }
 }
 
-fn local_frontiers<const TW: usize, const TH: usize>(
-    second_chance: bool,
+/// A planner of planner-core, here.
+fn on_host<const TW: usize, const TH: usize>(
+    config: PlannerConfig,
     id: RobotId,
     extent: Extent,
     start: Cell,
 ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
-    let config = local_frontiers::Config {
-        second_chance,
-        ..Default::default()
-    };
-    let mut planner = Box::new(LocalFrontiers::vacant());
-    planner.reset(config, id, extent, start)?;
-    Ok(planner)
+    Ok(match config {
+        PlannerConfig::Explorer(config) => {
+            let mut planner = Box::new(Explorer::vacant());
+            planner.reset(config, id, extent, start)?;
+            planner
+        }
+        PlannerConfig::LocalFrontiers(config) => {
+            let mut planner = Box::new(LocalFrontiers::vacant());
+            planner.reset(config, id, extent, start)?;
+            planner
+        }
+    })
 }
 
 /// The name used on the command line, for example `closest`.

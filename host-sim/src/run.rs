@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use planner_core::{Cell, Extent, RobotId, Stop, sight};
+use planner_core::{Cell, Extent, Planner, RobotId, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
@@ -212,6 +212,42 @@ pub struct Options<'a> {
     pub progress: Option<&'a mut dyn FnMut(Progress)>,
 }
 
+/// Where the planners of a run are.
+pub trait Host: Clone + 'static {
+    /// The planner of robot `id`, which starts at `start`.
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        scenario: &Scenario,
+        id: RobotId,
+        start: Cell,
+    ) -> Box<dyn Planner<TW, TH>>;
+
+    /// Whether the run has to end because a planner is lost.
+    fn has_failed(&self) -> bool;
+}
+
+/// In this process.
+#[derive(Clone, Copy, Debug)]
+pub struct Here;
+
+impl Host for Here {
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        scenario: &Scenario,
+        id: RobotId,
+        start: Cell,
+    ) -> Box<dyn Planner<TW, TH>> {
+        scenario
+            .planner
+            .build(id, scenario.range, scenario.world.extent(), start)
+            .expect("the compiled size holds the world")
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
 /// Runs a scenario until every living robot has stopped or time is up.
 ///
 /// # Errors
@@ -220,14 +256,26 @@ pub fn run(
     scenario: &Scenario,
     options: Options<'_>,
 ) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+    run_on(&Here, scenario, options)
+}
+
+/// As [`run`], with planners that are elsewhere.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn run_on(
+    host: &impl Host,
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> Result<(Outcome, Option<Trace>), ScenarioError> {
     scenario.check()?;
     let Extent { width, height } = scenario.world.extent();
     Ok(match width.max(height) {
-        0..=32 => run_compiled::<4, 4>(scenario, options),
-        33..=64 => run_compiled::<8, 8>(scenario, options),
-        65..=128 => run_compiled::<16, 16>(scenario, options),
-        129..=256 => run_compiled::<32, 32>(scenario, options),
-        _ => run_compiled::<64, 64>(scenario, options),
+        0..=32 => run_compiled::<4, 4>(host, scenario, options),
+        33..=64 => run_compiled::<8, 8>(host, scenario, options),
+        65..=128 => run_compiled::<16, 16>(host, scenario, options),
+        129..=256 => run_compiled::<32, 32>(host, scenario, options),
+        _ => run_compiled::<64, 64>(host, scenario, options),
     })
 }
 
@@ -236,42 +284,41 @@ pub fn run(
 /// # Panics
 /// If the world does not fit maps of this size.
 pub fn fleet<const TW: usize, const TH: usize>(
+    host: &impl Host,
     scenario: &Scenario,
     sensor: Arc<Sensor>,
 ) -> Fleet<TW, TH> {
-    let extent = scenario.world.extent();
     let rules = Rules {
         sync: scenario.sync,
         solid: scenario.solid,
         faults: scenario.faults.clone(),
     };
-    let planners = scenario.starts.iter().zip(0..).map(|(&start, id)| {
-        let planner = scenario
-            .planner
-            .build(RobotId(id), scenario.range, extent, start)
-            .expect("the compiled size holds the world");
-        (planner, start)
-    });
+    let planners = scenario
+        .starts
+        .iter()
+        .zip(0..)
+        .map(|(&start, id)| (host.planner(scenario, RobotId(id), start), start));
     let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
     Fleet::new(sensor, medium, rules, planners)
 }
 
-/// Runs a checked scenario on maps of `TW`×`TH` tiles. The result does not
+/// Runs a checked scenario with maps of `TW`×`TH` tiles. The result does not
 /// depend on them.
 ///
 /// # Panics
 /// If the world does not fit maps of this size.
 pub fn run_compiled<const TW: usize, const TH: usize>(
+    host: &impl Host,
     scenario: &Scenario,
     options: Options<'_>,
 ) -> (Outcome, Option<Trace>) {
     let sensor = options
         .sensor
         .unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
-    let mut fleet = fleet::<TW, TH>(scenario, sensor.clone());
+    let mut fleet = fleet::<TW, TH>(host, scenario, sensor.clone());
     let mut book = Book::new(scenario, sensor, options.trace);
     let mut progress = options.progress;
-    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() {
+    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() && !host.has_failed() {
         fleet.tick();
         book.note(&fleet);
         if let Some(progress) = &mut progress {

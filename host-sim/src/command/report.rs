@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use host_sim::measured::Measured;
 use host_sim::summary::{RobotSummary, Summary};
 
 /// Prints the summary on standard output.
@@ -36,8 +37,36 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             state(robot)
         );
     }
+    if let Some(measured) = &summary.firmware {
+        print_measured(measured);
+    }
     println!("  trace digest       {}", summary.trace_digest);
     println!("  files in           {}", out.display());
+}
+
+/// The table of instructions and memory.
+fn print_measured(measured: &Measured) {
+    println!(
+        "  on {:<15} {:>9} {:>9} {:>9}",
+        measured.machine, "calls", "mean", "largest"
+    );
+    for (call, tally) in &measured.instructions {
+        println!(
+            "    {:<16} {:>9} {:>9} {:>9} instructions",
+            call.to_string(),
+            tally.calls,
+            tally.mean,
+            tally.largest
+        );
+    }
+    println!(
+        "    planner {} bytes; image: {} bytes of flash, {} of statics, at most {} of {} of stack",
+        measured.planner_bytes,
+        measured.flash_bytes,
+        measured.static_bytes,
+        measured.peak_stack_bytes,
+        measured.stack_bytes
+    );
 }
 
 /// What an incomplete run left, and why.

@@ -100,6 +100,8 @@ pub struct State {
     pub work: u32,
     /// [`fingerprint`] of its map.
     pub map: u32,
+    /// The tile that the robot stands on.
+    pub here: TileRecord,
     /// What the robot is about to do.
     pub role: Option<explorer::Role>,
 }

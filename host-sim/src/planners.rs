@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::ExtentError;
+use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
@@ -36,48 +37,72 @@ pub enum PlannerKind {
     MinPosStrong,
 }
 
+/// What a robot starts with.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
+    /// Its number.
+    pub id: RobotId,
+    /// How far it sees, in cells.
+    pub range: u8,
+    /// Size of the grid.
+    pub extent: Extent,
+    /// Where it stands.
+    pub start: Cell,
+    /// How it uses the radio.
+    pub link: LinkConfig,
+}
+
 impl PlannerKind {
-    /// How a robot is set up that sees `range` cells far and decides by itself, on
-    /// the host as on a chip. `None`: the planner has a view of all robots, and
-    /// only the host can run it.
-    pub fn on_chip(self, range: u8) -> Option<PlannerConfig> {
+    /// How a planner decides that can run on a chip, and runs in the same way on
+    /// the host. `None`: this one has a view of all robots, which no chip has.
+    pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
+        let Setup { range, link, .. } = setup;
         let local_frontiers = |second_chance| {
             PlannerConfig::LocalFrontiers(local_frontiers::Config {
                 second_chance,
+                link,
                 ..Default::default()
             })
         };
         match self {
-            Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config::new(range))),
+            Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config {
+                link,
+                ..explorer::Config::new(range)
+            })),
             Self::LocalFrontiers => Some(local_frontiers(false)),
             Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
             Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong => None,
         }
     }
 
-    /// The planner of robot `id`, which sees `range` cells far and starts at
-    /// `start` on a grid of `extent`.
+    /// The planner of a robot that is set up like this.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
     pub fn build<const TW: usize, const TH: usize>(
         self,
-        id: RobotId,
-        range: u8,
-        extent: Extent,
-        start: Cell,
+        setup: Setup,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
-        if let Some(config) = self.on_chip(range) {
-            return on_host(config, id, extent, start);
+        if let Some(config) = self.on_chip(setup) {
+            return on_host(config, setup);
         }
+        let Setup {
+            id,
+            extent,
+            start,
+            link,
+            ..
+        } = setup;
         Ok(match self {
             Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {
                 unreachable!("planner-core has them")
             }
-            Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
-            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
-            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
-            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
+            Self::Closest => Box::new(Peer::new(Closest, id, extent, start, link)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start, link)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
+            Self::MinPosStrong => {
+                Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
+            }
         })
     }
 }
@@ -85,10 +110,11 @@ impl PlannerKind {
 /// A planner of planner-core, here.
 fn on_host<const TW: usize, const TH: usize>(
     config: PlannerConfig,
-    id: RobotId,
-    extent: Extent,
-    start: Cell,
+    setup: Setup,
 ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+    let Setup {
+        id, extent, start, ..
+    } = setup;
     Ok(match config {
         PlannerConfig::Explorer(config) => {
             let mut planner = Box::new(Explorer::vacant());

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use planner_core::{Cell, Extent, Planner, RobotId, Stop, sight};
+use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::{Cell, Extent, Map, Planner, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
-use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Violation};
-use crate::medium::Ideal;
-use crate::planners::PlannerKind;
+use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Sent, Violation};
+use crate::medium::{AirFaults, MediumKind};
+use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::trace::{Record, Trace};
 use crate::world::{Reachable, World};
@@ -25,17 +26,24 @@ pub struct Scenario {
     pub planner: PlannerKind,
     /// Sensor range in cells, 1 to 15.
     pub range: u8,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
     /// Ticks between two exchanges among robots; 0: never.
     pub sync: u32,
+    /// Bytes that a robot may send by radio in a tick on average. Less than a
+    /// frame: it sends one every few ticks.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
+    /// What else goes wrong in the air.
+    pub air: AirFaults,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell holds at most one robot.
     pub solid: bool,
     /// The run ends after this many ticks.
     pub max_ticks: u32,
-    /// What goes wrong.
+    /// What goes wrong with robots and cells.
     pub faults: Faults,
 }
 
@@ -49,8 +57,13 @@ pub enum ScenarioError {
     #[error("a sensor range of {0} cells; expected 1 to {max}", max = sight::MAX_RADIUS)]
     Range(u8),
     /// See the message.
-    #[error("a loss of {0}; expected 0 (none) to 1 (all)")]
-    Loss(f64),
+    #[error("a share of {share} for {name}; expected 0 (none) to 1 (all)")]
+    Share {
+        /// Of what.
+        name: &'static str,
+        /// How much.
+        share: f64,
+    },
     /// See the message.
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start {
@@ -72,9 +85,9 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// A scenario with the defaults: sensor range 5, exchange in every tick, no
-    /// loss, shared cells, seed 0, no faults, and ticks enough for any planner
-    /// that gets anywhere.
+    /// A scenario with the defaults: sensor range 5, the ideal medium with an
+    /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
+    /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
         let max_ticks = default_max_ticks(&world.reachable(&starts));
         Self {
@@ -82,8 +95,11 @@ impl Scenario {
             starts,
             planner,
             range: 5,
+            medium: MediumKind::Ideal,
             sync: 1,
+            byte_budget: MAX_LEN as u16,
             loss: 0.0,
+            air: AirFaults::default(),
             seed: 0,
             solid: false,
             max_ticks,
@@ -103,8 +119,14 @@ impl Scenario {
         if !(1..=sight::MAX_RADIUS).contains(&self.range) {
             return Err(ScenarioError::Range(self.range));
         }
-        if !(0.0..=1.0).contains(&self.loss) {
-            return Err(ScenarioError::Loss(self.loss));
+        for (name, share) in [
+            ("loss", self.loss),
+            ("duplication", self.air.duplication),
+            ("corruption", self.air.corruption),
+        ] {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(ScenarioError::Share { name, share });
+            }
         }
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
@@ -169,8 +191,12 @@ pub struct RobotOutcome {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that another living robot's map holds and its own lacks, if it lives.
+    pub cells_unheard: u32,
     /// Work of its planner over the run.
     pub work: u64,
+    /// What it sent by radio over the run.
+    pub sent: Sent,
     /// Why it stopped; `None` if it did not.
     pub stop: Option<Stop>,
     /// Whether it lived to the end of the run.
@@ -181,6 +207,11 @@ impl Outcome {
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
+    }
+
+    /// Whether all living robots know the same cells in the end.
+    pub fn maps_agree(&self) -> bool {
+        self.robots.iter().all(|robot| robot.cells_unheard == 0)
     }
 
     /// Share of the seen cells that more than one robot saw with its own
@@ -214,12 +245,14 @@ pub struct Options<'a> {
 
 /// Where the planners of a run are.
 pub trait Host: Clone + 'static {
-    /// The planner of robot `id`, which starts at `start`.
+    /// The planner of a robot.
+    ///
+    /// # Panics
+    /// If the grid does not fit a map of `TW`×`TH` tiles.
     fn planner<const TW: usize, const TH: usize>(
         &self,
-        scenario: &Scenario,
-        id: RobotId,
-        start: Cell,
+        kind: PlannerKind,
+        setup: Setup,
     ) -> Box<dyn Planner<TW, TH>>;
 
     /// Whether the run has to end because a planner is lost.
@@ -233,13 +266,10 @@ pub struct Here;
 impl Host for Here {
     fn planner<const TW: usize, const TH: usize>(
         &self,
-        scenario: &Scenario,
-        id: RobotId,
-        start: Cell,
+        kind: PlannerKind,
+        setup: Setup,
     ) -> Box<dyn Planner<TW, TH>> {
-        scenario
-            .planner
-            .build(id, scenario.range, scenario.world.extent(), start)
+        kind.build(setup)
             .expect("the compiled size holds the world")
     }
 
@@ -271,11 +301,11 @@ pub fn run_on(
     scenario.check()?;
     let Extent { width, height } = scenario.world.extent();
     Ok(match width.max(height) {
-        0..=32 => run_compiled::<4, 4>(host, scenario, options),
-        33..=64 => run_compiled::<8, 8>(host, scenario, options),
-        65..=128 => run_compiled::<16, 16>(host, scenario, options),
-        129..=256 => run_compiled::<32, 32>(host, scenario, options),
-        _ => run_compiled::<64, 64>(host, scenario, options),
+        0..=32 => compiled_on::<4, 4>(host, scenario, options),
+        33..=64 => compiled_on::<8, 8>(host, scenario, options),
+        65..=128 => compiled_on::<16, 16>(host, scenario, options),
+        129..=256 => compiled_on::<32, 32>(host, scenario, options),
+        _ => compiled_on::<64, 64>(host, scenario, options),
     })
 }
 
@@ -284,22 +314,45 @@ pub fn run_on(
 /// # Panics
 /// If the world does not fit maps of this size.
 pub fn fleet<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    sensor: Arc<Sensor>,
+) -> Fleet<TW, TH> {
+    fleet_on(&Here, scenario, sensor)
+}
+
+fn fleet_on<const TW: usize, const TH: usize>(
     host: &impl Host,
     scenario: &Scenario,
     sensor: Arc<Sensor>,
 ) -> Fleet<TW, TH> {
     let rules = Rules {
-        sync: scenario.sync,
         solid: scenario.solid,
         faults: scenario.faults.clone(),
     };
-    let planners = scenario
-        .starts
-        .iter()
-        .zip(0..)
-        .map(|(&start, id)| (host.planner(scenario, RobotId(id), start), start));
-    let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
-    Fleet::new(sensor, medium, rules, planners)
+    let link = LinkConfig {
+        bytes_per_tick: scenario.byte_budget,
+        ..LinkConfig::new()
+    };
+    let (host, kind) = (host.clone(), scenario.planner);
+    let (range, extent) = (scenario.range, scenario.world.extent());
+    let build = Box::new(move |id, start| {
+        let setup = Setup {
+            id,
+            range,
+            extent,
+            start,
+            link,
+        };
+        host.planner(kind, setup)
+    });
+    let medium = scenario.medium.build(
+        scenario.sync,
+        scenario.loss,
+        scenario.air.clone(),
+        scenario.seed,
+        scenario.world.clone(),
+    );
+    Fleet::new(sensor, medium, rules, build, &scenario.starts)
 }
 
 /// Runs a checked scenario with maps of `TW`×`TH` tiles. The result does not
@@ -308,6 +361,13 @@ pub fn fleet<const TW: usize, const TH: usize>(
 /// # Panics
 /// If the world does not fit maps of this size.
 pub fn run_compiled<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> (Outcome, Option<Trace>) {
+    compiled_on::<TW, TH>(&Here, scenario, options)
+}
+
+fn compiled_on<const TW: usize, const TH: usize>(
     host: &impl Host,
     scenario: &Scenario,
     options: Options<'_>,
@@ -315,7 +375,7 @@ pub fn run_compiled<const TW: usize, const TH: usize>(
     let sensor = options
         .sensor
         .unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
-    let mut fleet = fleet::<TW, TH>(host, scenario, sensor.clone());
+    let mut fleet = fleet_on::<TW, TH>(host, scenario, sensor.clone());
     let mut book = Book::new(scenario, sensor, options.trace);
     let mut progress = options.progress;
     while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() && !host.has_failed() {
@@ -357,7 +417,9 @@ impl Book {
                     blocked_steps: 0,
                     cells_known: 0,
                     cells_missed: 0,
+                    cells_unheard: 0,
                     work: 0,
+                    sent: Sent::default(),
                     stop: None,
                     alive: true,
                 };
@@ -386,6 +448,8 @@ impl Book {
             }
             let noted = &mut self.outcome.robots[index];
             noted.work += u64::from(step.work);
+            noted.sent.frames += step.sent.frames;
+            noted.sent.bytes += step.sent.bytes;
             noted.stop = None;
             match step.deed {
                 Deed::Moved(_) => noted.steps += 1,
@@ -426,10 +490,12 @@ impl Book {
     ) -> (Outcome, Option<Trace>) {
         self.outcome.shared_cells = self.coverage.shared_cells();
         self.outcome.violations = fleet.violations().to_vec();
+        let unheard = unheard(fleet);
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
             noted.cells_known = robot.planner.map().known_cells();
+            noted.cells_unheard = unheard[usize::from(robot.id.0)];
             noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
         }
         let trace = self.records.map(|records| Trace::new(scenario, records));
@@ -450,4 +516,24 @@ fn missed<const TW: usize, const TH: usize>(
     } else {
         0
     }
+}
+
+/// Robot by robot, the cells that it lacks and another one alive knows.
+fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> {
+    let alive = || fleet.robots().iter().filter(|robot| robot.alive);
+    let mut all: Option<Box<Map<TW, TH>>> = None;
+    for robot in alive() {
+        match &mut all {
+            None => all = Some(Box::new(robot.planner.map().clone())),
+            Some(all) => {
+                all.join(robot.planner.map());
+            }
+        }
+    }
+    let known = all.map_or(0, |all| all.known_cells());
+    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
+    let robots = fleet.robots().iter();
+    robots
+        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
+        .collect()
 }

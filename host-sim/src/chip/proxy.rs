@@ -4,17 +4,17 @@ use std::rc::Rc;
 
 use bridge::{Answer, Hello, Reply, Request, STAGED, State, VERSION, Welcome, fingerprint};
 use planner_core::explorer::Role;
-use planner_core::map::TileIndex;
+use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, FrameError, GridId, Heard, MAX_LEN, TileRecord};
 use planner_core::{
-    Action, Activity, Cell, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet,
+    Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet,
 };
 
 use super::emulator::Chip;
 use super::error::ChipError;
 use super::swarm::Book;
 use crate::measured::Call;
-use crate::run::Scenario;
+use crate::planners::{PlannerKind, Setup};
 
 /// Passes each verb on to the chip, and the chip's answer back.
 ///
@@ -36,11 +36,12 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
     pub(super) fn new(
         chip: Result<Chip, ChipError>,
         book: Rc<Book>,
-        scenario: &Scenario,
-        id: RobotId,
-        start: Cell,
+        kind: PlannerKind,
+        setup: Setup,
     ) -> Self {
-        let extent = scenario.world.extent();
+        let Setup {
+            id, extent, start, ..
+        } = setup;
         let mut map = Map::vacant();
         map.reset(extent)
             .expect("the compiled size holds the world");
@@ -59,10 +60,14 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
                 },
                 work: 0,
                 map: 0,
+                here: TileRecord {
+                    at: TileIndex::new(0, 0),
+                    tile: Tile::UNKNOWN,
+                },
                 role: None,
             },
         };
-        match chip.and_then(|chip| proxy.start(chip, scenario, start)) {
+        match chip.and_then(|chip| proxy.start(chip, kind, setup)) {
             Ok(chip) => proxy.chip = Some(chip),
             Err(failure) => proxy.fail(failure),
         }
@@ -72,13 +77,12 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
     fn start(
         &mut self,
         mut chip: Chip,
-        scenario: &Scenario,
-        start: Cell,
+        kind: PlannerKind,
+        setup: Setup,
     ) -> Result<Chip, ChipError> {
         let robot = self.id;
-        let planner = scenario.planner.on_chip(scenario.range);
-        let planner = planner.ok_or(ChipError::HostOnly(scenario.planner))?;
-        let extent = scenario.world.extent();
+        let Setup { extent, start, .. } = setup;
+        let planner = kind.on_chip(setup).ok_or(ChipError::HostOnly(kind))?;
         let link = planner.link();
         self.grid = GridId::of(extent, link.origin_mm, link.cell_mm);
         let welcome = chip.ask(&Request::Start {
@@ -130,6 +134,9 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
             self.book.measured.borrow_mut().count(call, nanoseconds);
         }
         self.state = answer.state;
+        // Where the robot stands shows in no message but this one.
+        let TileRecord { at, tile } = self.state.here;
+        self.map.join_tile(at, tile);
         let value = read(answer.reply);
         if value.is_none() {
             self.fail(ChipError::Dialogue {
@@ -177,7 +184,6 @@ fn learnt(reply: Reply<'_>) -> Option<Learnt> {
 impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
         self.map.observe(sighting);
-        self.map.visit(sighting.centre());
         let request = Request::Observe(sighting.clone());
         self.ask(Some(Call::Observe), &request, learnt)
             .unwrap_or_default()

@@ -4,13 +4,14 @@ use std::cell::{OnceCell, RefCell};
 use std::path::PathBuf;
 use std::rc::Rc;
 
-use planner_core::{Cell, Planner, RobotId};
+use planner_core::Planner;
 
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
 use super::proxy::Proxy;
 use crate::measured::Measured;
-use crate::run::{Host, Scenario};
+use crate::planners::{PlannerKind, Setup};
+use crate::run::Host;
 
 /// Hosts the planners of a run in emulated chips.
 #[derive(Clone)]
@@ -63,12 +64,11 @@ impl Swarm {
 impl Host for Swarm {
     fn planner<const TW: usize, const TH: usize>(
         &self,
-        scenario: &Scenario,
-        id: RobotId,
-        start: Cell,
+        kind: PlannerKind,
+        setup: Setup,
     ) -> Box<dyn Planner<TW, TH>> {
-        let chip = Chip::start(id, self.machine, &self.image);
-        Box::new(Proxy::new(chip, self.book.clone(), scenario, id, start))
+        let chip = Chip::start(setup.id, self.machine, &self.image);
+        Box::new(Proxy::new(chip, self.book.clone(), kind, setup))
     }
 
     fn has_failed(&self) -> bool {

@@ -7,8 +7,8 @@ use bridge::{
 use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
 use planner_core::explorer::Explorer;
 use planner_core::local_frontiers::LocalFrontiers;
-use planner_core::map::{ExtentError, Map, TileSet};
-use planner_core::radio::MAX_LEN;
+use planner_core::map::{ExtentError, Map, TileIndex, TileSet};
+use planner_core::radio::{MAX_LEN, TileRecord};
 use planner_core::{Cell, Extent, Planner, RobotId};
 use static_cell::ConstStaticCell;
 
@@ -75,12 +75,7 @@ pub(crate) fn serve() -> Result<(), Trouble> {
         };
         let answer = Answer {
             clock_ticks: ticks,
-            state: State {
-                status: planner.status(),
-                work: planner.work(),
-                map: fingerprint(planner.map()),
-                role: planner.role(),
-            },
+            state: state(planner),
             reply,
         };
         host.answer(&answer, outbox)?;
@@ -172,6 +167,22 @@ fn obey<'a>(
         Request::Memory => (Reply::Memory(memory(size)), 0),
         Request::Start { .. } | Request::End => return None,
     })
+}
+
+fn state(planner: &Robot) -> State {
+    let status = planner.status();
+    // Beyond the map's edge there is no robot.
+    let at = TileIndex::of(status.position).map_or(TileIndex::new(0, 0), |(at, _)| at);
+    State {
+        status,
+        work: planner.work(),
+        map: fingerprint(planner.map()),
+        here: TileRecord {
+            at,
+            tile: planner.map().tile_inside(at),
+        },
+        role: planner.role(),
+    }
 }
 
 fn memory(planner: usize) -> Memory {

@@ -15,7 +15,8 @@ mod message;
 mod wire;
 
 pub use message::{
-    Answer, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome, fingerprint,
+    Answer, Cost, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome,
+    fingerprint,
 };
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 

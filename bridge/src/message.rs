@@ -82,13 +82,22 @@ pub enum Request<'a> {
 /// What the image answers to any other request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Answer<'a> {
-    /// Ticks of the image's clock that the planner's call took.
-    pub clock_ticks: u32,
+    /// What the planner's call took.
+    pub cost: Cost,
     /// What has become of the planner.
     pub state: State,
     /// What the call returned.
     #[serde(borrow)]
     pub reply: Reply<'a>,
+}
+
+/// What a call takes of the chip.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Ticks of the image's clock.
+    pub clock_ticks: u32,
+    /// Bytes of the stack.
+    pub stack: u32,
 }
 
 /// What the simulator records of a planner after every call.

@@ -1,13 +1,16 @@
-//! Counts what a call costs, with the timer that every Cortex-M has.
+//! What a call costs: time by the timer that every Cortex-M has, stack by paint.
 //!
 //! Under QEMU's `-icount shift=0` an instruction takes one nanosecond, so the
 //! timer counts instructions: the same number in every run, to within one tick.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use bridge::Cost;
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::exception;
+
+use crate::stack;
 
 /// The timer has 24 bits and counts down.
 const RELOAD: u32 = 0x00ff_ffff;
@@ -38,11 +41,16 @@ impl Stopwatch {
         Self(())
     }
 
-    /// Makes a call, and says how many ticks of the clock it took.
-    pub fn time<T>(&self, call: impl FnOnce() -> T) -> (T, u32) {
-        let begin = self.now();
-        let value = call();
-        (value, self.now().wrapping_sub(begin))
+    /// Makes a call, and says what it took.
+    pub fn measure<T>(&self, call: impl FnOnce() -> T) -> (T, Cost) {
+        let timed = || {
+            let begin = self.now();
+            let value = call();
+            (value, self.now().wrapping_sub(begin))
+        };
+        let ((value, clock_ticks), stack) = stack::depth(timed);
+        let stack = stack as u32;
+        (value, Cost { clock_ticks, stack })
     }
 
     /// Ticks since the start, modulo 2³².

@@ -39,7 +39,7 @@ impl fmt::Display for Call {
     }
 }
 
-/// Instructions of all calls of one kind.
+/// Instructions and stack of all calls of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// Number of calls.
@@ -48,6 +48,8 @@ pub struct Tally {
     pub mean: u64,
     /// Instructions of the most expensive call.
     pub largest: u64,
+    /// The most stack that a call took.
+    pub stack_bytes: u32,
     /// Instructions of all calls.
     #[serde(skip)]
     total: u64,
@@ -58,27 +60,28 @@ pub struct Tally {
 pub struct Measured {
     /// The board that was emulated.
     pub machine: String,
-    /// Instructions, call by call, over all robots.
-    pub instructions: BTreeMap<Call, Tally>,
+    /// Instructions and stack, call by call, over all robots.
+    pub calls: BTreeMap<Call, Tally>,
     /// The planner, everything included, in bytes.
     pub planner_bytes: u32,
     /// All statics of the image: every planner that it can host, and the dialogue.
     pub static_bytes: u32,
     /// The image in flash.
     pub flash_bytes: u32,
-    /// The most stack that any robot ever used.
+    /// The most stack that any robot ever used, the dialogue included.
     pub peak_stack_bytes: u32,
     /// The stack.
     pub stack_bytes: u32,
 }
 
 impl Measured {
-    pub(crate) fn count(&mut self, call: Call, instructions: u64) {
-        let tally = self.instructions.entry(call).or_default();
+    pub(crate) fn count(&mut self, call: Call, instructions: u64, stack: u32) {
+        let tally = self.calls.entry(call).or_default();
         tally.calls += 1;
         tally.total += instructions;
         tally.mean = tally.total / tally.calls;
         tally.largest = tally.largest.max(instructions);
+        tally.stack_bytes = tally.stack_bytes.max(stack);
     }
 
     pub(crate) fn weigh(&mut self, memory: &Memory) {

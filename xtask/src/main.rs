@@ -36,8 +36,12 @@ enum Task {
         #[arg(long)]
         list: bool,
     },
-    /// Builds the image for the chip; prints its path, flash and static RAM.
-    BuildFirmware,
+    /// Builds the images for a chip; prints their path, flash and static RAM.
+    BuildFirmware {
+        /// The board, by QEMU's name of it.
+        #[arg(long, value_name = "NAME", default_value = "netduinoplus2")]
+        machine: firmware::Machine,
+    },
     /// Builds the image and runs it in QEMU (an emulated STM32F405).
     RunFirmware,
     /// Explores random small worlds until one of them goes wrong.
@@ -55,7 +59,8 @@ fn main() -> ExitCode {
             Ok(())
         }
         Task::Test { only, .. } => checks::run(&only),
-        Task::BuildFirmware => firmware::build().map(|image| println!("{image}")),
+        Task::BuildFirmware { machine } => firmware::build_images(machine)
+            .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
         Task::Soak { runs } => soak(runs),
     };

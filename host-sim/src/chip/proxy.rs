@@ -130,8 +130,9 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
             }
         };
         if let Some(call) = call {
-            let nanoseconds = u64::from(answer.clock_ticks) * 1_000_000_000 / self.clock_hz;
-            self.book.measured.borrow_mut().count(call, nanoseconds);
+            let nanoseconds = u64::from(answer.cost.clock_ticks) * 1_000_000_000 / self.clock_hz;
+            let mut measured = self.book.measured.borrow_mut();
+            measured.count(call, nanoseconds, answer.cost.stack);
         }
         self.state = answer.state;
         // Where the robot stands shows in no message but this one.

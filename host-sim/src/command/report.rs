@@ -55,16 +55,17 @@ pub(super) fn print(summary: &Summary, out: &Path) {
 /// The table of instructions and memory.
 fn print_measured(measured: &Measured) {
     println!(
-        "  on {:<15} {:>9} {:>9} {:>9}",
-        measured.machine, "calls", "mean", "largest"
+        "  on {:<14} {:>9} {:>9} {:>9} instructions {:>6} bytes of stack",
+        measured.machine, "calls", "mean", "largest", "most"
     );
-    for (call, tally) in &measured.instructions {
+    for (call, tally) in &measured.calls {
         println!(
-            "    {:<16} {:>9} {:>9} {:>9} instructions",
+            "    {:<13} {:>9} {:>9} {:>9} {:>19}",
             call.to_string(),
             tally.calls,
             tally.mean,
-            tally.largest
+            tally.largest,
+            tally.stack_bytes
         );
     }
     println!(

@@ -1,8 +1,8 @@
 //! The planner, and what the simulator asks of it.
 
 use bridge::{
-    Answer, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request, Rows, State, VERSION,
-    Welcome, fingerprint,
+    Answer, Cost, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request, Rows, State,
+    VERSION, Welcome, fingerprint,
 };
 use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
 use planner_core::explorer::Explorer;
@@ -69,12 +69,12 @@ pub(crate) fn serve() -> Result<(), Trouble> {
     loop {
         let request = host.ask(inbox)?;
         let mut frame = [0; MAX_LEN];
-        let Some((reply, ticks)) = obey(planner, size, stage, &stopwatch, request, &mut frame)
+        let Some((reply, cost)) = obey(planner, size, stage, &stopwatch, request, &mut frame)
         else {
             return Ok(());
         };
         let answer = Answer {
-            clock_ticks: ticks,
+            cost,
             state: state(planner),
             reply,
         };
@@ -105,7 +105,7 @@ fn prepare(
     })
 }
 
-/// Does what is asked for, and says how many ticks of the clock the planner took.
+/// Does what is asked for, and says what the planner's call took.
 /// `None`: the simulator has finished.
 fn obey<'a>(
     planner: &mut Robot,
@@ -114,57 +114,57 @@ fn obey<'a>(
     stopwatch: &Stopwatch,
     request: Request<'_>,
     frame: &'a mut [u8; MAX_LEN],
-) -> Option<(Reply<'a>, u32)> {
+) -> Option<(Reply<'a>, Cost)> {
     Some(match request {
         Request::Observe(sighting) => {
-            let (learnt, ticks) = stopwatch.time(|| planner.observe(&sighting));
-            (Reply::Learnt(learnt), ticks)
+            let (learnt, cost) = stopwatch.measure(|| planner.observe(&sighting));
+            (Reply::Learnt(learnt), cost)
         }
         Request::Tick => {
-            let (action, ticks) = stopwatch.time(|| planner.tick());
-            (Reply::Action(action), ticks)
+            let (action, cost) = stopwatch.measure(|| planner.tick());
+            (Reply::Action(action), cost)
         }
         Request::Report(motion) => {
-            let ((), ticks) = stopwatch.time(|| planner.report(motion));
-            (Reply::Done, ticks)
+            let ((), cost) = stopwatch.measure(|| planner.report(motion));
+            (Reply::Done, cost)
         }
         Request::Transmit => {
-            let (length, ticks) = stopwatch.time(|| planner.transmit(frame));
+            let (length, cost) = stopwatch.measure(|| planner.transmit(frame));
             (
                 Reply::Frame(length.and_then(|length| frame.get(..length))),
-                ticks,
+                cost,
             )
         }
         Request::Receive(bytes) => {
-            let (heard, ticks) = stopwatch.time(|| planner.receive(bytes));
-            (Reply::Heard(heard), ticks)
+            let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));
+            (Reply::Heard(heard), cost)
         }
         Request::TakeChanged => {
-            let (changed, ticks) = stopwatch.time(|| planner.take_changed());
+            let (changed, cost) = stopwatch.measure(|| planner.take_changed());
             let rows = (0..ROWS as u8).map(|y| changed.row(y)).collect::<Rows>();
-            (Reply::Changed(rows), ticks)
+            (Reply::Changed(rows), cost)
         }
         Request::Stage(records) => {
             for record in records {
                 stage.map.join_tile(record.at, record.tile);
                 stage.tiles.insert(record.at);
             }
-            (Reply::Done, 0)
+            (Reply::Done, Cost::default())
         }
         Request::Join => {
-            let (learnt, ticks) = stopwatch.time(|| planner.join(&stage.map, &stage.tiles));
+            let (learnt, cost) = stopwatch.measure(|| planner.join(&stage.map, &stage.tiles));
             stage.tiles.clear();
-            (Reply::Learnt(learnt), ticks)
+            (Reply::Learnt(learnt), cost)
         }
         Request::Hear(id, status) => {
-            let ((), ticks) = stopwatch.time(|| planner.hear(id, status));
-            (Reply::Done, ticks)
+            let ((), cost) = stopwatch.measure(|| planner.hear(id, status));
+            (Reply::Done, cost)
         }
         Request::Adopt(role) => {
-            let ((), ticks) = stopwatch.time(|| planner.adopt(role));
-            (Reply::Done, ticks)
+            let ((), cost) = stopwatch.measure(|| planner.adopt(role));
+            (Reply::Done, cost)
         }
-        Request::Memory => (Reply::Memory(memory(size)), 0),
+        Request::Memory => (Reply::Memory(memory(size)), Cost::default()),
         Request::Start { .. } | Request::End => return None,
     })
 }

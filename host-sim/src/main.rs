@@ -15,6 +15,12 @@ enum Command {
     /// Exit status: 0 every reachable cell was seen, 1 something was left, 2
     /// bad input.
     Explore(command::Explore),
+    /// The same with every robot's planner on an emulated chip of its own.
+    ///
+    /// Decides what `explore` decides, and tells what it takes of the chip.
+    /// Exit status: as of `explore`.
+    #[cfg(unix)]
+    Firmware(command::Firmware),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
     /// Serve a map to robots that are processes of their own.
@@ -29,6 +35,8 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Command::parse() {
         Command::Explore(explore) => explore.run(),
+        #[cfg(unix)]
+        Command::Firmware(firmware) => firmware.run(),
         Command::Generate(generate) => generate.run(),
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),

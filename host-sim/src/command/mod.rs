@@ -1,6 +1,8 @@
 //! The subcommands: from arguments to the library and back.
 
 mod explore;
+#[cfg(unix)]
+mod firmware;
 mod folder;
 mod generate;
 mod live;
@@ -10,6 +12,8 @@ use std::error::Error;
 use std::process::ExitCode;
 
 pub(crate) use explore::Explore;
+#[cfg(unix)]
+pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
 pub(crate) use live::{Robot, World};
 

@@ -9,6 +9,7 @@
 
 mod coverage;
 pub mod draw;
+pub mod experiments;
 pub mod fleet;
 pub mod medium;
 pub mod peers;

@@ -15,6 +15,8 @@ enum Command {
     /// Exit status: 0 every reachable cell was seen, 1 something was left, 2
     /// bad input.
     Explore(command::Explore),
+    /// Run planners in many worlds and compare them with a reference, in pairs.
+    Compare(command::Compare),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
 }
@@ -22,6 +24,7 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Command::parse() {
         Command::Explore(explore) => explore.run(),
+        Command::Compare(compare) => compare.run(),
         Command::Generate(generate) => generate.run(),
     };
     done.unwrap_or_else(|error| {

@@ -152,6 +152,8 @@ pub struct Outcome {
     pub max_work_per_tick: u32,
     /// Reachable cells seen by somebody, tick by tick.
     pub coverage: Vec<u32>,
+    /// Costs of the ways that were assigned.
+    pub assignments: Assignments,
     /// Robot by robot.
     pub robots: Vec<RobotOutcome>,
     /// Moves into obstacles. Anything but none is a bug of a planner.
@@ -177,7 +179,48 @@ pub struct RobotOutcome {
     pub alive: bool,
 }
 
+/// The costs of assignments by both criteria of [Bautin2011]. The robots that get
+/// a way in the same tick make up one assignment; a cost is the length of a way
+/// in steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Assignments {
+    /// Ticks in which a robot was assigned a way.
+    pub count: u32,
+    /// Criterion 1, summed over assignments: the sum of costs.
+    pub sum: u64,
+    /// Criterion 2, summed over assignments: the largest cost.
+    pub largest: u64,
+}
+
+impl Assignments {
+    fn add(&mut self, costs: impl Iterator<Item = u32> + Clone) {
+        if let Some(largest) = costs.clone().max() {
+            self.count += 1;
+            self.sum += costs.map(u64::from).sum::<u64>();
+            self.largest += u64::from(largest);
+        }
+    }
+
+    /// Mean of criterion 1; `None` if nothing was assigned.
+    pub fn mean_sum(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum as f64 / f64::from(self.count))
+    }
+
+    /// Mean of criterion 2; `None` if nothing was assigned.
+    pub fn mean_largest(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.largest as f64 / f64::from(self.count))
+    }
+}
+
 impl Outcome {
+    /// Moves that anybody could have made when the share `share` (0 to 1) of
+    /// the reachable cells had been seen; `None` if that never was.
+    pub fn ticks_to_share(&self, share: f64) -> Option<u32> {
+        let enough = share * f64::from(self.reachable_cells);
+        let reached = |&seen: &u32| f64::from(seen) >= enough;
+        Some(self.coverage.iter().position(reached)? as u32)
+    }
+
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
@@ -304,6 +347,7 @@ impl Book {
             shared_cells: 0,
             max_work_per_tick: 0,
             coverage: Vec::new(),
+            assignments: Assignments::default(),
             robots: vec![
                 RobotOutcome {
                     steps: 0,
@@ -352,7 +396,11 @@ impl Book {
                 records.push(Record::new(tick, robot, step));
             }
         }
+        let living = fleet.robots().iter().filter(|robot| robot.alive);
         let outcome = &mut self.outcome;
+        outcome
+            .assignments
+            .add(living.filter_map(|robot| robot.planner.assignment()));
         outcome.ticks = fleet.ticks();
         outcome.seen_cells = self.coverage.seen_cells();
         outcome.coverage.push(outcome.seen_cells);

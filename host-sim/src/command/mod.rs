@@ -1,5 +1,6 @@
 //! The subcommands: from arguments to the library and back.
 
+mod compare;
 mod explore;
 mod folder;
 mod generate;
@@ -8,6 +9,7 @@ mod report;
 use std::error::Error;
 use std::process::ExitCode;
 
+pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
 pub(crate) use generate::Generate;
 

@@ -17,6 +17,8 @@ enum Command {
     Explore(command::Explore),
     /// Run planners in many worlds and compare them with a reference, in pairs.
     Compare(command::Compare),
+    /// Draw the figures of the papers anew, with a page that shows them.
+    Figures(command::Figures),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
 }
@@ -25,6 +27,7 @@ fn main() -> ExitCode {
     let done = match Command::parse() {
         Command::Explore(explore) => explore.run(),
         Command::Compare(compare) => compare.run(),
+        Command::Figures(figures) => figures.run(),
         Command::Generate(generate) => generate.run(),
     };
     done.unwrap_or_else(|error| {

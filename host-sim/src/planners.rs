@@ -9,7 +9,7 @@ use planner_core::map::ExtentError;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
+use crate::peers::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -33,9 +33,33 @@ pub enum PlannerKind {
     #[value(name = "minpos-strong")]
     #[serde(rename = "minpos-strong")]
     MinPosStrong,
+    /// Brick & Mortar with long range vision: closes what nobody needs any more.
+    Bmilrv,
 }
 
 impl PlannerKind {
+    /// The planners of a team, by id: each as by [`build`](Self::build), but
+    /// those that work by marks share them, and meet where the first one starts.
+    ///
+    /// # Errors
+    /// A grid that a map of `TW`×`TH` tiles does not hold.
+    pub fn team<const TW: usize, const TH: usize>(
+        self,
+        range: u8,
+        extent: Extent,
+        starts: &[Cell],
+    ) -> Result<Vec<Box<dyn Planner<TW, TH>>>, ExtentError> {
+        let shared = starts.first().map(|&start| Marks::new(extent, start));
+        let robot = |(&start, id)| match (self, &shared) {
+            (Self::Bmilrv, Some(marks)) => {
+                let robot = Bmilrv::new(marks.clone(), RobotId(id), extent, start)?;
+                Ok(Box::new(robot) as _)
+            }
+            _ => self.build(RobotId(id), range, extent, start),
+        };
+        starts.iter().zip(0..).map(robot).collect()
+    }
+
     /// The planner of robot `id`, which sees `range` cells far and starts at
     /// `start` on a grid of `extent`.
     ///
@@ -60,6 +84,10 @@ impl PlannerKind {
             Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
             Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
+            Self::Bmilrv => {
+                let marks = Marks::new(extent, start);
+                Box::new(Bmilrv::new(marks, id, extent, start)?)
+            }
         })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use planner_core::{Cell, Extent, RobotId, Stop, sight};
+use planner_core::{Cell, Extent, Stop, sight};
 use thiserror::Error;
 
 use crate::coverage::Coverage;
@@ -288,13 +288,12 @@ pub fn fleet<const TW: usize, const TH: usize>(
         solid: scenario.solid,
         faults: scenario.faults.clone(),
     };
-    let planners = scenario.starts.iter().zip(0..).map(|(&start, id)| {
-        let planner = scenario
-            .planner
-            .build(RobotId(id), scenario.range, extent, start)
-            .expect("the compiled size holds the world");
-        (planner, start)
-    });
+    let planners = scenario
+        .planner
+        .team(scenario.range, extent, &scenario.starts)
+        .expect("the compiled size holds the world")
+        .into_iter()
+        .zip(scenario.starts.iter().copied());
     let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
     Fleet::new(sensor, medium, rules, planners)
 }

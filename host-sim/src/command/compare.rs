@@ -109,7 +109,7 @@ impl Compare {
         };
         let bar = self.progress_bar(&plan);
         bar.set_position(plan.keys().filter(|key| done.contains(key)).count() as u64);
-        execute(&plan, self.shard, &done, &|row| {
+        execute(&plan, self.shard, &done, &|row, _| {
             bar.inc(1);
             journal.add(&row)
         })?;

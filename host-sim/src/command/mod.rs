@@ -2,6 +2,7 @@
 
 mod compare;
 mod explore;
+mod figures;
 mod folder;
 mod generate;
 mod report;
@@ -11,6 +12,7 @@ use std::process::ExitCode;
 
 pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
+pub(crate) use figures::Figures;
 pub(crate) use generate::Generate;
 
 /// The exit status, or what is wrong with the input.

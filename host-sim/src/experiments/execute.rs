@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::journal::JournalError;
 use super::plan::{Plan, Site};
 use super::row::{Key, Row};
-use crate::run::{Options, ScenarioError, run};
+use crate::run::{Options, Outcome, ScenarioError, run};
 use crate::sensor::Sensor;
 use crate::world::WorldError;
 
@@ -67,7 +67,7 @@ pub enum ExecuteError {
 }
 
 /// Does the runs of a plan that belong to the shard and are not `done`, and
-/// hands over each row as its run ends. Runs in one world share its sensors,
+/// hands over each row and outcome as a run ends. Runs in one world share its sensors,
 /// which are dropped before the next world is begun.
 ///
 /// # Errors
@@ -76,7 +76,7 @@ pub fn execute(
     plan: &Plan,
     shard: Shard,
     done: &HashSet<Key>,
-    finish: &(dyn Fn(Row) -> Result<(), JournalError> + Sync),
+    finish: &(dyn Fn(Row, Outcome) -> Result<(), JournalError> + Sync),
 ) -> Result<(), ExecuteError> {
     let setups = plan.setups();
     let at_site = |(number, site): (usize, &Site)| {
@@ -106,7 +106,7 @@ pub fn execute(
                 ..Options::default()
             };
             let (outcome, _) = run(&scenario, options)?;
-            Ok(finish(Row::new(site, setup, &outcome))?)
+            Ok(finish(Row::new(site, setup, &outcome), outcome)?)
         })
     };
     plan.sites.par_iter().enumerate().try_for_each(at_site)

@@ -8,6 +8,7 @@
 //! shared work; [`compare`] pairs planners with a reference.
 
 mod execute;
+pub mod figures;
 mod journal;
 mod parquet;
 mod plan;
@@ -20,5 +21,5 @@ pub use journal::{Journal, JournalError, to_csv};
 pub use parquet::write_parquet;
 pub use plan::{Place, Plan, Setup, Site};
 pub use row::{Key, Metric, Row};
-pub use statistics::{Comparison, Conditions, Interval, compare, geometric_mean};
+pub use statistics::{Comparison, Conditions, Interval, compare, geometric_mean, mean};
 pub use table::{comparisons_csv, markdown};

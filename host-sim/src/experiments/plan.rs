@@ -23,8 +23,7 @@ pub struct Plan {
     pub robots: Vec<u8>,
     /// How robots are placed.
     pub place: Place,
-    /// Placings in each world. Those that do not depend on chance give the same
-    /// run each time.
+    /// Placings in each world.
     pub starts: u32,
     /// Ticks between two exchanges.
     pub syncs: Vec<u32>,
@@ -54,11 +53,13 @@ pub enum Place {
     Random,
     /// Each on a cell that is drawn.
     Scattered,
-    /// Together, nearest to the centre.
+    /// Together, nearest to the centre; further placings on the next nearest
+    /// cells.
     Center,
-    /// Together, nearest to the top left corner.
+    /// Together, nearest to the top left corner, and on.
     Corner,
-    /// Where the map says, else in the centre.
+    /// Where the map says, else in the centre; further placings together, on
+    /// the cells nearest to the map's first start.
     Map,
 }
 
@@ -187,9 +188,9 @@ impl Setup {
         let drawn = self.seed + u64::from(self.start);
         let together = match self.place {
             Place::Random => Starts::Random(drawn),
-            Place::Center => Starts::Center,
-            Place::Corner => Starts::Corner,
-            Place::Map => world.default_starts(),
+            Place::Center => self.beside(world, Starts::Center)?,
+            Place::Corner => self.beside(world, Starts::Corner)?,
+            Place::Map => self.beside(world, world.default_starts())?,
             Place::Scattered => {
                 let robots = 0..u64::from(self.robots);
                 let cells = robots
@@ -198,5 +199,17 @@ impl Setup {
             }
         };
         world.place(self.robots.into(), &together, false)
+    }
+
+    /// The first placing is at `starts`, each further one on the next cell from
+    /// there.
+    fn beside(&self, world: &World, starts: Starts) -> Result<Starts, WorldError> {
+        if self.start == 0 {
+            return Ok(starts);
+        }
+        let first = world.place(1, &starts, false)?;
+        let mut cells: Vec<Cell> = world.reachable(&first).cells().collect();
+        cells.sort_by_key(|cell| (cell.distance_squared(first[0]), cell.y, cell.x));
+        Ok(Starts::At(vec![cells[self.start as usize % cells.len()]]))
     }
 }

@@ -7,37 +7,34 @@ use distrs::StudentsT;
 use super::row::{Key, Metric, Row};
 use crate::planners::PlannerKind;
 
-/// A geometric mean and its 95 % confidence interval.
+/// A mean and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
     /// The mean.
     pub mean: f64,
-    /// Lower end; 0 if there is too little to tell.
+    /// Lower end.
     pub low: f64,
     /// Upper end; infinite if there is too little to tell.
     pub high: f64,
 }
 
-/// The geometric mean of positive samples, each with what it stems from.
+/// The mean of samples, each with what it stems from; `None` of none.
 ///
 /// Samples of one origin (runs in one world) resemble each other: the interval
 /// takes origins, not samples, for independent, unless all are of one origin.
-/// It is that of Student's t over the logarithms, with the variance of a mean
-/// over clusters [Cochran1977 §9A].
-pub fn geometric_mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Interval> {
-    let samples: Vec<(&str, f64)> = samples
-        .into_iter()
-        .map(|(origin, sample)| (origin, sample.ln()))
-        .collect();
+/// It is that of Student's t, with the variance of a mean over clusters
+/// [Cochran1977 §9A].
+pub fn mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Interval> {
+    let samples: Vec<(&str, f64)> = samples.into_iter().collect();
     let count = samples.len() as f64;
-    let mean = samples.iter().map(|(_, log)| log).sum::<f64>() / count;
+    let mean = samples.iter().map(|(_, value)| value).sum::<f64>() / count;
     let mut origins = BTreeMap::new();
-    for (origin, log) in &samples {
-        *origins.entry(*origin).or_insert(0.0) += log - mean;
+    for (origin, value) in &samples {
+        *origins.entry(*origin).or_insert(0.0) += value - mean;
     }
     let deviations: Vec<f64> = match origins.len() {
         0 => return None,
-        1 => samples.iter().map(|(_, log)| log - mean).collect(),
+        1 => samples.iter().map(|(_, value)| value - mean).collect(),
         _ => origins.into_values().collect(),
     };
     let clusters = deviations.len() as f64;
@@ -49,9 +46,21 @@ pub fn geometric_mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> 
         f64::INFINITY
     };
     Some(Interval {
+        mean,
+        low: mean - half,
+        high: mean + half,
+    })
+}
+
+/// The geometric mean of positive samples: the [`mean`] of their logarithms.
+pub fn geometric_mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Interval> {
+    let logarithms = samples
+        .into_iter()
+        .map(|(origin, sample)| (origin, sample.ln()));
+    mean(logarithms).map(|Interval { mean, low, high }| Interval {
         mean: mean.exp(),
-        low: (mean - half).exp(),
-        high: (mean + half).exp(),
+        low: low.exp(),
+        high: high.exp(),
     })
 }
 

@@ -81,7 +81,7 @@ const PANEL: (u32, u32) = (620, 400);
 const HEAD: i32 = 44;
 const LEGEND_LINE: i32 = 24;
 /// Width of a character of the legend in pixels, about.
-const CHARACTER: i32 = 9;
+const CHARACTER: i32 = 8;
 const GRID: RGBColor = RGBColor(225, 228, 233);
 
 type Plane<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -173,25 +173,24 @@ impl Chart {
 }
 
 impl Panel {
+    /// The largest value, with its error bar unless that would dwarf the rest.
+    fn highest(&self) -> f64 {
+        let points = || self.series.iter().flat_map(|series| &series.points);
+        let value = points().map(|point| point.y).fold(1.0, f64::max);
+        let error = points()
+            .map(|point| point.high)
+            .filter(|high| high.is_finite());
+        error.fold(value, f64::max).min(1.5 * value)
+    }
+
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), DrawError>
     where
         DB::ErrorType: 'static,
     {
-        let points = || self.series.iter().flat_map(|series| &series.points);
-        let highest = points().map(|point| {
-            if point.high.is_finite() {
-                point.high
-            } else {
-                point.y
-            }
-        });
-        let top = 1.05 * highest.fold(1.0, f64::max);
+        let top = 1.05 * self.highest();
         let (label, across) = match &self.x {
             Axis::Places(label, places) => (label, -0.5..places.len() as f64 - 0.5),
-            Axis::Numbers(label) => (
-                label,
-                0.0..points().map(|point| point.x).fold(1.0, f64::max),
-            ),
+            Axis::Numbers(label) => (label, 0.0..self.farthest()),
         };
         let place = |x: &f64| match &self.x {
             Axis::Numbers(_) => format!("{x:.0}"),
@@ -221,19 +220,20 @@ impl Panel {
             .y_label_formatter(&|y| format!("{y:.0}"))
             .draw()?;
         for (number, series) in self.series.iter().enumerate() {
-            series.draw(&mut plane, number, self.series.len())?;
+            series.draw(&mut plane, number, self.series.len(), top)?;
         }
         Ok(())
     }
 }
 
 impl Series {
-    /// Draws this as number `number` of `count` series.
+    /// Draws this as number `number` of `count` series, below `top`.
     fn draw<DB: DrawingBackend>(
         &self,
         plane: &mut Plane<'_, DB>,
         number: usize,
         count: usize,
+        top: f64,
     ) -> Result<(), DrawError>
     where
         DB::ErrorType: 'static,
@@ -247,7 +247,7 @@ impl Series {
                     let left = point.x + (middle - 0.5) * width;
                     Rectangle::new([(left, 0.0), (left + 0.9 * width, point.y)], color.filled())
                 }))?;
-                self.draw_errors(plane, INK, (middle - 0.05) * width)
+                self.draw_errors(plane, INK, (middle - 0.05) * width, top)
             }
             Style::Dots => {
                 // Side by side, so that no error bar hides another.
@@ -255,7 +255,7 @@ impl Series {
                 let shifted = || self.points.iter().map(|point| (point.x + shift, point.y));
                 plane.draw_series(LineSeries::new(shifted(), color.stroke_width(2)))?;
                 plane.draw_series(shifted().map(|at| Circle::new(at, 3, color.filled())))?;
-                self.draw_errors(plane, color, shift)
+                self.draw_errors(plane, color, shift, top)
             }
             Style::Curve => {
                 let lower = self.points.iter().map(|point| (point.x, point.low));
@@ -274,6 +274,7 @@ impl Series {
         plane: &mut Plane<'_, DB>,
         color: RGBColor,
         shift: f64,
+        top: f64,
     ) -> Result<(), DrawError>
     where
         DB::ErrorType: 'static,
@@ -281,7 +282,7 @@ impl Series {
         let sure = self.points.iter().filter(|point| point.high.is_finite());
         plane.draw_series(sure.map(|point| {
             let (x, style) = (point.x + shift, color.stroke_width(1));
-            ErrorBar::new_vertical(x, point.low, point.y, point.high, style, 7)
+            ErrorBar::new_vertical(x, point.low, point.y, point.high.min(top), style, 7)
         }))?;
         Ok(())
     }

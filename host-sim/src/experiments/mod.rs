@@ -23,3 +23,6 @@ pub use plan::{Place, Plan, Setup, Site};
 pub use row::{Key, Metric, Row};
 pub use statistics::{Comparison, Conditions, Interval, compare, geometric_mean, mean};
 pub use table::{comparisons_csv, markdown};
+
+#[cfg(test)]
+mod tests;

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use planner_core::Extent;
-
 use crate::experiments::{Place, Plan, Site};
 use crate::planners::PlannerKind::{
     self, Bmilrv, Closest, Explorer, Greedy, LocalFrontiers, LocalFrontiersSecondChance, MinPos,
 };
-use crate::world::{Family, Recipe, World, paper};
+use crate::world::{World, paper};
 
 /// Seed of the labyrinths in `fixtures/maps`, and of all figures.
 const SEED: u64 = 1;
@@ -74,12 +72,7 @@ pub fn figures(effort: Effort, hospital: Option<Arc<World>>) -> Vec<Figure> {
             blocks.clone(),
         ]
     };
-    let maze = Recipe {
-        corridor: Some(3),
-        ..Recipe::new(Family::WideMaze, Extent::new(61, 61), SEED)
-    };
-    let maze = maze.generate().expect("the recipe is in range");
-    let mut slides = vec![Site::Given(Arc::new(maze))];
+    let mut slides = vec![Site::Given(Arc::new(paper::maze(SEED)))];
     slides.extend(hospital.map(Site::Given));
     vec![
         Figure {

@@ -1,4 +1,3 @@
-use std::collections::HashSet;
 use std::sync::Arc;
 
 use planner_core::{Cell, Direction, RobotId};
@@ -17,6 +16,7 @@ struct Watched {
     marks: Marks,
     fleet: Fleet<8, 8>,
     rendezvous: Cell,
+    reachable: Vec<Cell>,
 }
 
 impl Watched {
@@ -39,6 +39,7 @@ impl Watched {
             marks,
             fleet,
             rendezvous: starts[0],
+            reachable: world.reachable(&starts).cells().collect(),
             world,
         }
     }
@@ -48,19 +49,17 @@ impl Watched {
     fn check_law(&self) {
         let marks = self.marks.lock();
         let is_open = |cell| self.world.is_free(cell) && marks.mark(cell) != Mark::Closed;
-        let mut joined = HashSet::from([self.rendezvous]);
+        let mut joined = vec![false; self.world.extent().cells() as usize];
         let mut todo = vec![self.rendezvous];
         while let Some(cell) = todo.pop() {
-            let around = Direction::ALL.map(|direction| cell.step(direction));
-            todo.extend(
-                around
-                    .into_iter()
-                    .filter(|&cell| is_open(cell) && joined.insert(cell)),
-            );
+            if is_open(cell) && !std::mem::replace(&mut joined[marks.index(cell).unwrap()], true) {
+                todo.extend(Direction::ALL.map(|direction| cell.step(direction)));
+            }
         }
-        let unexplored = self.world.reachable(&[self.rendezvous]);
-        let unexplored = unexplored
-            .cells()
+        let unexplored = self
+            .reachable
+            .iter()
+            .copied()
             .filter(|&cell| marks.mark(cell) == Mark::Unexplored);
         let robots = self.fleet.robots().iter().filter(|robot| robot.alive);
         let robots = robots.map(|robot| robot.position);
@@ -71,7 +70,7 @@ impl Watched {
                 self.fleet.ticks()
             );
             assert!(
-                joined.contains(&cell),
+                joined[marks.index(cell).unwrap()],
                 "tick {}: {cell} is cut off",
                 self.fleet.ticks()
             );
@@ -99,12 +98,8 @@ impl Watched {
         assert!(self.fleet.violations().is_empty());
         for robot in self.fleet.robots().iter().filter(|robot| robot.alive) {
             assert_eq!(robot.position, self.rendezvous);
-            let reachable = self.world.reachable(&[self.rendezvous]);
-            assert!(
-                reachable
-                    .cells()
-                    .all(|cell| robot.planner.map().is_known(cell))
-            );
+            let map = robot.planner.map();
+            assert!(self.reachable.iter().all(|&cell| map.is_known(cell)));
         }
     }
 }

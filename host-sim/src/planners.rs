@@ -75,7 +75,7 @@ impl PlannerKind {
         Ok(match self {
             Self::Explorer => {
                 let mut explorer = Box::new(Explorer::vacant());
-                explorer.reset(explorer::Config::new(range), id, extent, start)?;
+                explorer.reset(explorer::Config::new(), id, extent, start)?;
                 explorer
             }
             Self::LocalFrontiers => local_frontiers(false, id, extent, start)?,

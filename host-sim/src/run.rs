@@ -76,7 +76,7 @@ impl Scenario {
     /// loss, shared cells, seed 0, no faults, and ticks enough for any planner
     /// that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
-        let max_ticks = default_max_ticks(&world.reachable(&starts));
+        let max_ticks = default_max_ticks(&world.reachable(&starts), planner);
         Self {
             world,
             starts,
@@ -124,11 +124,16 @@ impl Scenario {
     }
 }
 
-/// Ticks after which a run is given up if nobody says otherwise: eight for each
-/// cell that can be reached, and a thousand. One robot that walks to every cell
-/// and back needs two.
-pub fn default_max_ticks(reachable: &Reachable) -> u32 {
-    1000 + 8 * reachable.count()
+/// Ticks after which a run is given up if nobody says otherwise: a thousand, and
+/// eight for each cell that can be reached, of which one robot that walks to
+/// every cell and back needs two. BMILRV may go round many loops many times: a
+/// hundred for each cell.
+pub fn default_max_ticks(reachable: &Reachable, planner: PlannerKind) -> u32 {
+    let each = match planner {
+        PlannerKind::Bmilrv => 100,
+        _ => 8,
+    };
+    1000 + each * reachable.count()
 }
 
 /// What happened in a run.

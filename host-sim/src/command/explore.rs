@@ -49,7 +49,8 @@ pub(crate) struct Explore {
     /// A cell holds at most one robot.
     #[arg(long)]
     solid: bool,
-    /// Give up after this many ticks. Default: 1000 and 8 for each reachable cell.
+    /// Give up after this many ticks. Default: 1000 and 8 for each reachable
+    /// cell, for bmilrv 100.
     #[arg(long, value_name = "T")]
     max_ticks: Option<u32>,
     /// Folder for pictures, trace and summary. Default: out/ and the map's name.

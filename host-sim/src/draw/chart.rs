@@ -183,6 +183,12 @@ impl Panel {
         error.fold(value, f64::max).min(1.5 * value)
     }
 
+    /// The end of the horizontal axis.
+    fn farthest(&self) -> f64 {
+        let points = self.series.iter().flat_map(|series| &series.points);
+        points.map(|point| point.x).fold(1.0, f64::max)
+    }
+
     fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>) -> Result<(), DrawError>
     where
         DB::ErrorType: 'static,

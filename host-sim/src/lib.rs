@@ -11,6 +11,7 @@
 pub mod chip;
 mod coverage;
 pub mod draw;
+pub mod experiments;
 pub mod fleet;
 pub mod live;
 pub mod measured;

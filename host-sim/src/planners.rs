@@ -11,7 +11,7 @@ use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
+use crate::peers::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -35,6 +35,8 @@ pub enum PlannerKind {
     #[value(name = "minpos-strong")]
     #[serde(rename = "minpos-strong")]
     MinPosStrong,
+    /// Brick & Mortar with long range vision: closes what nobody needs any more.
+    Bmilrv,
 }
 
 /// What a robot starts with.
@@ -69,7 +71,7 @@ impl PlannerKind {
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),
             Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
-            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong => None,
+            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong | Self::Bmilrv => None,
         }
     }
 
@@ -99,6 +101,10 @@ impl PlannerKind {
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
             Self::MinPosStrong => {
                 Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
+            }
+            Self::Bmilrv => {
+                let marks = Marks::new(extent, start);
+                Box::new(Bmilrv::new(marks, id, extent, start)?)
             }
         })
     }

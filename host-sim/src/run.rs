@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
 use crate::medium::{AirFaults, MediumKind};
+use crate::peers::{Bmilrv, Marks};
 use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
@@ -91,7 +92,7 @@ impl Scenario {
     /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
     /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
-        let max_ticks = default_max_ticks(&world.reachable(&starts));
+        let max_ticks = default_max_ticks(&world.reachable(&starts), planner);
         Self {
             world,
             starts,
@@ -148,11 +149,16 @@ impl Scenario {
     }
 }
 
-/// Ticks after which a run is given up if nobody says otherwise: eight for each
-/// cell that can be reached, and a thousand. One robot that walks to every cell
-/// and back needs two.
-pub fn default_max_ticks(reachable: &Reachable) -> u32 {
-    1000 + 8 * reachable.count()
+/// Ticks after which a run is given up if nobody says otherwise: a thousand, and
+/// eight for each cell that can be reached, of which one robot that walks to
+/// every cell and back needs two. BMILRV may go round many loops many times: a
+/// hundred for each cell.
+pub fn default_max_ticks(reachable: &Reachable, planner: PlannerKind) -> u32 {
+    let each = match planner {
+        PlannerKind::Bmilrv => 100,
+        _ => 8,
+    };
+    1000 + each * reachable.count()
 }
 
 /// What happened in a run.
@@ -176,6 +182,8 @@ pub struct Outcome {
     pub max_work_per_tick: u32,
     /// Reachable cells seen by somebody, tick by tick.
     pub coverage: Vec<u32>,
+    /// Costs of the ways that were assigned.
+    pub assignments: Assignments,
     /// Robot by robot.
     pub robots: Vec<RobotOutcome>,
     /// Moves into obstacles. Anything but none is a bug of a planner.
@@ -205,7 +213,48 @@ pub struct RobotOutcome {
     pub alive: bool,
 }
 
+/// The costs of assignments by both criteria of [Bautin2011]. The robots that get
+/// a way in the same tick make up one assignment; a cost is the length of a way
+/// in steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Assignments {
+    /// Ticks in which a robot was assigned a way.
+    pub count: u32,
+    /// Criterion 1, summed over assignments: the sum of costs.
+    pub sum: u64,
+    /// Criterion 2, summed over assignments: the largest cost.
+    pub largest: u64,
+}
+
+impl Assignments {
+    fn add(&mut self, costs: impl Iterator<Item = u32> + Clone) {
+        if let Some(largest) = costs.clone().max() {
+            self.count += 1;
+            self.sum += costs.map(u64::from).sum::<u64>();
+            self.largest += u64::from(largest);
+        }
+    }
+
+    /// Mean of criterion 1; `None` if nothing was assigned.
+    pub fn mean_sum(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum as f64 / f64::from(self.count))
+    }
+
+    /// Mean of criterion 2; `None` if nothing was assigned.
+    pub fn mean_largest(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.largest as f64 / f64::from(self.count))
+    }
+}
+
 impl Outcome {
+    /// Moves that anybody could have made when the share `share` (0 to 1) of
+    /// the reachable cells had been seen; `None` if that never was.
+    pub fn ticks_to_share(&self, share: f64) -> Option<u32> {
+        let enough = share * f64::from(self.reachable_cells);
+        let reached = |&seen: &u32| f64::from(seen) >= enough;
+        Some(self.coverage.iter().position(reached)? as u32)
+    }
+
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
@@ -337,7 +386,16 @@ fn fleet_on<const TW: usize, const TH: usize>(
     };
     let (host, kind) = (host.clone(), scenario.planner);
     let extent = scenario.world.extent();
-    let build = Box::new(move |id, start| {
+    // Robots that work by marks share them, and meet where the first one starts.
+    let marks = match (kind, scenario.starts.first()) {
+        (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
+        _ => None,
+    };
+    let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
+        if let Some(marks) = &marks {
+            let robot = Bmilrv::new(marks.clone(), id, extent, start);
+            return Box::new(robot.expect("the compiled size holds the world"));
+        }
         let setup = Setup {
             id,
             extent,

@@ -1,6 +1,8 @@
 //! The subcommands: from arguments to the library and back.
 
+mod compare;
 mod explore;
+mod figures;
 #[cfg(unix)]
 mod firmware;
 mod folder;
@@ -11,7 +13,9 @@ mod report;
 use std::error::Error;
 use std::process::ExitCode;
 
+pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
+pub(crate) use figures::Figures;
 #[cfg(unix)]
 pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use planner_core::{Cell, Map};
 
-use super::{Outcome, Progress, RobotOutcome, Scenario};
+use super::{Assignments, Outcome, Progress, RobotOutcome, Scenario};
 use crate::coverage::Coverage;
 use crate::fleet::{Deed, Fleet, Robot, Sent};
 use crate::sensor::Sensor;
@@ -34,6 +34,7 @@ impl Book {
             shared_cells: 0,
             max_work_per_tick: 0,
             coverage: Vec::new(),
+            assignments: Assignments::default(),
             robots: vec![
                 RobotOutcome {
                     steps: 0,
@@ -86,7 +87,11 @@ impl Book {
                 records.push(Record::new(tick, robot, step));
             }
         }
+        let living = fleet.robots().iter().filter(|robot| robot.alive);
         let outcome = &mut self.outcome;
+        outcome
+            .assignments
+            .add(living.filter_map(|robot| robot.planner.assignment()));
         outcome.ticks = fleet.ticks();
         outcome.seen_cells = self.coverage.seen_cells();
         outcome.coverage.push(outcome.seen_cells);

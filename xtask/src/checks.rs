@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{cargo, command};
-use crate::{documents, firmware, install};
+use crate::{c_interface, documents, firmware, install};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -134,6 +134,16 @@ const CHECKS: &[Check] = &[
         name: "no-panic",
         title: "no path from planner-core leads to a panic",
         run: firmware::has_no_panic,
+    },
+    Check {
+        name: "c-header",
+        title: "the header of the C interface is current",
+        run: c_interface::header_is_current,
+    },
+    Check {
+        name: "c-example",
+        title: "the example in C explores in the emulator",
+        run: c_interface::example_explores,
     },
     Check {
         name: "miri",

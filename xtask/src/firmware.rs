@@ -1,7 +1,7 @@
 //! The image for the chip: built, measured, run in the emulator.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -271,7 +271,7 @@ fn cargo_build(target: &str) -> Command {
     ])
 }
 
-fn path(image: &str, target: &str) -> PathBuf {
+pub(crate) fn path(image: &str, target: &str) -> PathBuf {
     let folder = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     shell::root()
         .join(folder)
@@ -280,7 +280,7 @@ fn path(image: &str, target: &str) -> PathBuf {
         .join(image)
 }
 
-fn emulate(image: &str) -> Result<Output> {
+pub(crate) fn emulate(image: &str) -> Result<Output> {
     let run = command(install::QEMU)
         .args([
             "-machine",
@@ -297,6 +297,13 @@ fn emulate(image: &str) -> Result<Output> {
     run.output_within(LIMIT)
 }
 
+/// Bytes of flash that an image takes.
+pub(crate) fn flash(image: &Path) -> Result<u64> {
+    let bytes = std::fs::read(image)?;
+    let elf = object::File::parse(&*bytes)?;
+    Ok(elf.segments().map(|segment| segment.file_range().1).sum())
+}
+
 fn measure(path: &PathBuf) -> Result<Image> {
     let bytes = std::fs::read(path)?;
     let elf = object::File::parse(&*bytes)?;
@@ -307,7 +314,7 @@ fn measure(path: &PathBuf) -> Result<Image> {
     };
     Ok(Image {
         path: path.clone(),
-        flash: elf.segments().map(|segment| segment.file_range().1).sum(),
+        flash: flash(path)?,
         // RAM begins where the stack does.
         statics: address("__euninit")? - address("_stack_start")?,
     })

@@ -2,6 +2,7 @@
 //! the chip, long runs. `cargo xtask --help` tells more.
 
 mod budget;
+mod c_interface;
 mod checks;
 mod documents;
 mod firmware;
@@ -44,6 +45,8 @@ enum Task {
     },
     /// Builds the image and runs it in QEMU (an emulated STM32F405).
     RunFirmware,
+    /// Writes the header of the C interface, c-api/include/planner.h.
+    CHeader,
     /// Explores random small worlds until one of them goes wrong.
     Soak {
         /// How many worlds.
@@ -62,6 +65,7 @@ fn main() -> ExitCode {
         Task::BuildFirmware { machine } => firmware::build_images(machine)
             .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
+        Task::CHeader => c_interface::write_header(),
         Task::Soak { runs } => soak(runs),
     };
     match outcome {

@@ -39,10 +39,15 @@ impl Robot {
         memory: *mut Planner,
     ) -> Result<&'a mut Explorer<TILES, TILES>, PlannerResult> {
         check(memory)?;
-        output(memory.cast::<Self>())?.write(Self {
-            created: CREATED,
-            explorer: Explorer::vacant(),
-        });
+        let place = memory.cast::<Self>();
+        // SAFETY: inside of the memory, which `check` has looked at and which is
+        // large enough by the assertions above.
+        let (created, explorer) =
+            unsafe { (&raw mut (*place).created, &raw mut (*place).explorer) };
+        // A constant that is all zero: the compiler clears the memory in place, and
+        // needs neither a copy on the stack nor one in flash.
+        output(explorer)?.write(const { Explorer::vacant() });
+        output(created)?.write(CREATED);
         robot(memory)
     }
 }

@@ -76,7 +76,7 @@ pub(crate) fn example_explores() -> Result<String> {
         .args(["-I", "c-api/include", "-T"])
         .arg(source("stm32f405.ld"))
         .args([source("main.c"), source("board.c"), library])
-        .args(["-Wl,--gc-sections", "-o"])
+        .args(["-Wl,--gc-sections,-z,noexecstack", "-o"])
         .arg(&image)
         .run()?;
     let output = firmware::emulate("c-example")?;

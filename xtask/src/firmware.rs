@@ -97,7 +97,7 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
             "--locked",
             "--",
         ])
-        .args(["--ignored", "--nocapture", "--test-threads=1"]),
+        .args(["--ignored", "--nocapture"]),
     )?;
     print!("{}", output.stdout);
     if !output.success() {

@@ -68,6 +68,16 @@ const CHECKS: &[Check] = &[
                 firmware::TARGET,
             ])
             .args(["--", "-Dwarnings"])
+            .run()?;
+            cargo([
+                "clippy",
+                "-p=c-api",
+                "-p=stm32f405",
+                "--lib",
+                "--bins",
+                "--target",
+            ])
+            .args([firmware::TARGET, "--", "-Dwarnings"])
             .run()
             .map(nothing)
         },
@@ -144,6 +154,11 @@ const CHECKS: &[Check] = &[
         name: "c-example",
         title: "the example in C explores in the emulator",
         run: c_interface::example_explores,
+    },
+    Check {
+        name: "example",
+        title: "the robot to start from builds for its chip",
+        run: firmware::example_builds,
     },
     Check {
         name: "miri",

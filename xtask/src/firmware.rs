@@ -170,6 +170,24 @@ pub(crate) fn explores() -> Result<String> {
     ))
 }
 
+/// The example that users start from links with the memory layout of its chip.
+pub(crate) fn example_builds() -> Result<String> {
+    install::target(TARGET)?;
+    cargo([
+        "build",
+        "--profile=firmware",
+        "-p=stm32f405",
+        "--target",
+        TARGET,
+    ])
+    .run()?;
+    let image = measure(&path("stm32f405", TARGET))?;
+    Ok(format!(
+        "flash {}, static RAM {} bytes",
+        image.flash, image.statics
+    ))
+}
+
 /// An image that runs out of stack faults at once, and says so.
 pub(crate) fn stack_overflow_faults() -> Result<String> {
     install::target(TARGET)?;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{cargo, command};
-use crate::{documents, firmware, fuzz, install};
+use crate::{c_interface, documents, firmware, fuzz, install};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -68,6 +68,16 @@ const CHECKS: &[Check] = &[
                 firmware::TARGET,
             ])
             .args(["--", "-Dwarnings"])
+            .run()?;
+            cargo([
+                "clippy",
+                "-p=c-api",
+                "-p=stm32f405",
+                "--lib",
+                "--bins",
+                "--target",
+            ])
+            .args([firmware::TARGET, "--", "-Dwarnings"])
             .run()
             .map(nothing)
         },
@@ -134,6 +144,21 @@ const CHECKS: &[Check] = &[
         name: "no-panic",
         title: "no path from planner-core leads to a panic",
         run: firmware::has_no_panic,
+    },
+    Check {
+        name: "c-header",
+        title: "the header of the C interface is current",
+        run: c_interface::header_is_current,
+    },
+    Check {
+        name: "c-example",
+        title: "the example in C explores in the emulator",
+        run: c_interface::example_explores,
+    },
+    Check {
+        name: "example",
+        title: "the robot to start from builds for its chip",
+        run: firmware::example_builds,
     },
     Check {
         name: "miri",

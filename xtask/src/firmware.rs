@@ -1,7 +1,7 @@
 //! The image for the chip: built, measured, run in the emulator.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow, bail};
@@ -97,7 +97,7 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
             "--locked",
             "--",
         ])
-        .args(["--ignored", "--nocapture", "--test-threads=1"]),
+        .args(["--ignored", "--nocapture"]),
     )?;
     print!("{}", output.stdout);
     if !output.success() {
@@ -166,6 +166,24 @@ pub(crate) fn explores() -> Result<String> {
     }
     Ok(format!(
         "flash {}, static RAM {}, stack {stack} bytes",
+        image.flash, image.statics
+    ))
+}
+
+/// The example that users start from links with the memory layout of its chip.
+pub(crate) fn example_builds() -> Result<String> {
+    install::target(TARGET)?;
+    cargo([
+        "build",
+        "--profile=firmware",
+        "-p=stm32f405",
+        "--target",
+        TARGET,
+    ])
+    .run()?;
+    let image = measure(&path("stm32f405", TARGET))?;
+    Ok(format!(
+        "flash {}, static RAM {} bytes",
         image.flash, image.statics
     ))
 }
@@ -271,7 +289,7 @@ fn cargo_build(target: &str) -> Command {
     ])
 }
 
-fn path(image: &str, target: &str) -> PathBuf {
+pub(crate) fn path(image: &str, target: &str) -> PathBuf {
     let folder = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     shell::root()
         .join(folder)
@@ -280,7 +298,7 @@ fn path(image: &str, target: &str) -> PathBuf {
         .join(image)
 }
 
-fn emulate(image: &str) -> Result<Output> {
+pub(crate) fn emulate(image: &str) -> Result<Output> {
     let run = command(install::QEMU)
         .args([
             "-machine",
@@ -297,6 +315,13 @@ fn emulate(image: &str) -> Result<Output> {
     run.output_within(LIMIT)
 }
 
+/// Bytes of flash that an image takes.
+pub(crate) fn flash(image: &Path) -> Result<u64> {
+    let bytes = std::fs::read(image)?;
+    let elf = object::File::parse(&*bytes)?;
+    Ok(elf.segments().map(|segment| segment.file_range().1).sum())
+}
+
 fn measure(path: &PathBuf) -> Result<Image> {
     let bytes = std::fs::read(path)?;
     let elf = object::File::parse(&*bytes)?;
@@ -307,7 +332,7 @@ fn measure(path: &PathBuf) -> Result<Image> {
     };
     Ok(Image {
         path: path.clone(),
-        flash: elf.segments().map(|segment| segment.file_range().1).sum(),
+        flash: flash(path)?,
         // RAM begins where the stack does.
         statics: address("__euninit")? - address("_stack_start")?,
     })

@@ -13,6 +13,9 @@ pub(crate) const NIGHTLY: &str = "nightly";
 /// The emulator of the chip.
 pub(crate) const QEMU: &str = "qemu-system-arm";
 
+/// The compiler for C on the chip.
+pub(crate) const C_COMPILER: &str = "arm-none-eabi-gcc";
+
 /// The standard library of a target, for the toolchain of this project.
 pub(crate) fn target(triple: &str) -> Result<()> {
     let rustup = || command("rustup").args(["target"]);
@@ -76,9 +79,19 @@ pub(crate) fn miri() -> Result<()> {
     ]))
 }
 
-/// The emulator, from the system's package manager.
+/// The emulator.
 pub(crate) fn qemu() -> Result<()> {
-    if command(QEMU)
+    package(QEMU, QEMU)
+}
+
+/// The compiler for C on the chip.
+pub(crate) fn c_compiler() -> Result<()> {
+    package(C_COMPILER, "gcc-arm-none-eabi")
+}
+
+/// A program, from the system's package manager.
+fn package(program: &str, package: &str) -> Result<()> {
+    if command(program)
         .arg("--version")
         .output()
         .is_ok_and(|output| output.success())
@@ -87,8 +100,8 @@ pub(crate) fn qemu() -> Result<()> {
     }
     if command("apt-get").arg("--version").output().is_err() {
         bail!(
-            "{QEMU} is missing, and only apt-get is known here; install QEMU's Arm \
-             emulator, for example `brew install qemu` or `dnf install qemu-system-arm`"
+            "{program} is missing, and only apt-get is known here; install it with the \
+             package manager of your system"
         );
     }
     let is_root = command("id")
@@ -105,8 +118,8 @@ pub(crate) fn qemu() -> Result<()> {
         () if is_root => &[],
         () if may_sudo() => &["sudo", "-n"],
         () => bail!(
-            "{QEMU} is missing, and installing it needs your password; \
-             run `sudo apt-get install -y --no-install-recommends {QEMU}`"
+            "{program} is missing, and installing it needs your password; \
+             run `sudo apt-get install -y --no-install-recommends {package}`"
         ),
     };
     let apt = |arguments: &[&str]| {
@@ -116,7 +129,7 @@ pub(crate) fn qemu() -> Result<()> {
             .args(words)
             .env("DEBIAN_FRONTEND", "noninteractive")
     };
-    let install = || apt(&["install", "-y", "--no-install-recommends", QEMU]);
+    let install = || apt(&["install", "-y", "--no-install-recommends", package]);
     // A new machine has no package lists yet.
     install().run().or_else(|_| {
         apt(&["update"]).run()?;

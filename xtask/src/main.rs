@@ -2,6 +2,7 @@
 //! the chip, long runs. `cargo xtask --help` tells more.
 
 mod budget;
+mod c_interface;
 mod checks;
 mod documents;
 mod firmware;
@@ -51,6 +52,8 @@ enum Task {
         #[arg(long, value_name = "N", default_value_t = 600)]
         seconds: u32,
     },
+    /// Writes the header of the C interface, c-api/include/planner.h.
+    CHeader,
     /// Explores random small worlds until one of them goes wrong.
     Soak {
         /// How many worlds.
@@ -70,6 +73,7 @@ fn main() -> ExitCode {
             .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
+        Task::CHeader => c_interface::write_header(),
         Task::Soak { runs } => soak(runs),
     };
     match outcome {

@@ -1,0 +1,111 @@
+// A robot in C: explores a small built-in map and checks that bad pointers are
+// answered. Runs on an emulated STM32F405; `cargo xtask test --only c-example`.
+
+#include "board.h"
+#include "planner.h"
+
+// All memory that the planner ever takes. Sizes are known when this is compiled.
+static Planner robot;
+_Static_assert(sizeof(Planner) <= 25 * 1024 + 8, "the Crazyflie's default build leaves 29,044 bytes");
+_Static_assert(sizeof(PlannerAction) == 12, "compile with -fshort-enums, the default for arm-none-eabi");
+_Static_assert(PLANNER_MAX_FRAME <= 60, "a packet of the Crazyflie's peer-to-peer radio");
+
+static const char *const WORLD[] = {
+    "########################",
+    "#..........#...........#",
+    "#..........#...........#",
+    "#..........#....####...#",
+    "#..........#....#..#...#",
+    "#...............#..#...#",
+    "#..........#....#..#...#",
+    "#######.####....#..#...#",
+    "#..........#...........#",
+    "#..........#...........#",
+    "#..........#...........#",
+    "########################",
+};
+enum { WIDTH = 24, HEIGHT = 12, RANGE = 2 };
+
+static bool is_blocked(int x, int y) {
+    return x < 0 || y < 0 || x >= WIDTH || y >= HEIGHT || WORLD[y][x] == '#';
+}
+
+static void check(bool holds, const char *what) {
+    if (!holds) {
+        board_print("failed: ");
+        board_print(what);
+        board_print("\n");
+        board_exit(false);
+    }
+}
+
+// What a real robot's sensor would tell: the cells around it.
+static void look(PlannerCell at) {
+    PlannerSeen seen[(2 * RANGE + 1) * (2 * RANGE + 1)];
+    size_t count = 0;
+    for (int y = -RANGE; y <= RANGE; y++) {
+        for (int x = -RANGE; x <= RANGE; x++) {
+            PlannerCell cell = {(int16_t)(at.x + x), (int16_t)(at.y + y)};
+            // Behind a wall next to the robot nothing is seen.
+            bool hidden = is_blocked(at.x + x / 2, at.y + y / 2) && (x / 2 != 0 || y / 2 != 0);
+            if (!hidden) {
+                seen[count++] = (PlannerSeen){cell, is_blocked(cell.x, cell.y)};
+            }
+        }
+    }
+    check(planner_observe_cells(&robot, at, seen, count) == PLANNER_RESULT_OK, "observe");
+}
+
+static void bad_pointers_are_answered(const PlannerConfig *config) {
+    PlannerAction action;
+    Planner *crooked = (Planner *)((char *)&robot + 1);
+    check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "not created");
+    check(planner_create(NULL, config) == PLANNER_RESULT_NULL, "no planner");
+    check(planner_create(&robot, NULL) == PLANNER_RESULT_NULL, "no configuration");
+    check(planner_create(crooked, config) == PLANNER_RESULT_MISALIGNED, "misaligned");
+}
+
+int main(void) {
+    PlannerCell at = {1, 1};
+    const PlannerConfig config = {
+        .id = 0,
+        .range = RANGE,
+        .width = WIDTH,
+        .height = HEIGHT,
+        .start = at,
+        .cell_mm = 100,
+        .bytes_per_tick = PLANNER_MAX_FRAME,
+    };
+    bad_pointers_are_answered(&config);
+    check(planner_create(&robot, &config) == PLANNER_RESULT_OK, "create");
+
+    for (int tick = 0; tick < 2000; tick++) {
+        look(at);
+        PlannerAction action;
+        check(planner_tick(&robot, &action) == PLANNER_RESULT_OK, "tick");
+        if (action.kind == PLANNER_ACTION_KIND_STOP) {
+            check(action.stop == PLANNER_STOP_COMPLETE, "complete");
+            board_print("complete\n");
+            return 0;
+        }
+        if (action.kind == PLANNER_ACTION_KIND_MOVE) {
+            static const int8_t DX[] = {1, 0, -1, 0}, DY[] = {0, 1, 0, -1};
+            int x = at.x + DX[action.direction], y = at.y + DY[action.direction];
+            if (is_blocked(x, y)) {
+                check(planner_report(&robot, PLANNER_BLOCKED) == PLANNER_RESULT_OK, "report");
+            } else {
+                at = (PlannerCell){(int16_t)x, (int16_t)y};
+                check(planner_report(&robot, PLANNER_MOVED) == PLANNER_RESULT_OK, "report");
+            }
+        }
+        uint8_t frame[PLANNER_MAX_FRAME];
+        size_t length;
+        check(planner_transmit(&robot, frame, &length) == PLANNER_RESULT_OK, "transmit");
+        // Its own frame says nothing to a robot; a real one would broadcast it.
+        if (length > 0) {
+            check(planner_receive(&robot, frame, length) == PLANNER_RESULT_FRAME, "receive");
+        }
+    }
+    board_print("not complete\n");
+    return 1;
+}

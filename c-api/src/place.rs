@@ -1,0 +1,125 @@
+//! From pointers to references: the only unsafe code, and why it is sound.
+
+use planner_core::explorer::Explorer;
+
+use crate::types::PlannerResult;
+
+/// Columns and rows of tiles of the map.
+pub(crate) const TILES: usize = 16;
+
+/// Size of a planner in words of 8 bytes.
+pub const PLANNER_WORDS: usize = 3200;
+
+/// Memory for one planner. `planner_create` makes one in it. Do not copy it.
+#[repr(C)]
+pub struct Planner {
+    words: [u64; PLANNER_WORDS],
+}
+
+/// What lies in a [`Planner`] once it is created.
+#[repr(C)]
+pub(crate) struct Robot {
+    /// [`CREATED`]; anything else: no planner was created here.
+    created: u32,
+    explorer: Explorer<TILES, TILES>,
+}
+
+const _: () = assert!(
+    size_of::<Robot>() <= size_of::<Planner>(),
+    "the explorer does not fit in a Planner: raise PLANNER_WORDS"
+);
+const _: () = assert!(align_of::<Robot>() <= align_of::<Planner>());
+
+/// The first word of every planner.
+const CREATED: u32 = 0x9e37_79b1;
+
+impl Robot {
+    /// A planner without a map, in place.
+    pub(crate) fn create<'a>(
+        memory: *mut Planner,
+    ) -> Result<&'a mut Explorer<TILES, TILES>, PlannerResult> {
+        check(memory)?;
+        let place = memory.cast::<Self>();
+        // SAFETY: inside of the memory, which `check` has looked at and which is
+        // large enough by the assertions above.
+        let (created, explorer) =
+            unsafe { (&raw mut (*place).created, &raw mut (*place).explorer) };
+        // A constant that is all zero: the compiler clears the memory in place, and
+        // needs neither a copy on the stack nor one in flash.
+        output(explorer)?.write(const { Explorer::vacant() });
+        output(created)?.write(CREATED);
+        robot(memory)
+    }
+}
+
+/// The planner in this memory.
+pub(crate) fn robot<'a>(
+    memory: *mut Planner,
+) -> Result<&'a mut Explorer<TILES, TILES>, PlannerResult> {
+    check(memory)?;
+    // SAFETY: not null, aligned, and by the header's contract as large as a
+    // Planner. Any bits are a valid u32.
+    let created = unsafe { memory.cast::<u32>().read() };
+    if created != CREATED {
+        return Err(PlannerResult::NotCreated);
+    }
+    // SAFETY: only `create` writes that word, before a whole Robot; it fits by the
+    // assertions above. The header forbids other uses of the memory meanwhile.
+    let robot = unsafe { &mut *memory.cast::<Robot>() };
+    Ok(&mut robot.explorer)
+}
+
+/// A value that the caller gives.
+pub(crate) fn input<'a, T: Copy>(pointer: *const T) -> Result<&'a T, PlannerResult> {
+    check(pointer)?;
+    // SAFETY: not null, aligned, and by the header's contract a T, which the
+    // caller does not change meanwhile. All bits of the types in `types.rs` that
+    // are given are valid.
+    Ok(unsafe { &*pointer })
+}
+
+/// Values that the caller gives. Where there are none, the pointer may be null.
+pub(crate) fn inputs<'a, T: Copy>(
+    pointer: *const T,
+    count: usize,
+) -> Result<&'a [T], PlannerResult> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    check(pointer)?;
+    if count
+        .checked_mul(size_of::<T>())
+        .is_none_or(|bytes| bytes > isize::MAX as usize)
+    {
+        return Err(PlannerResult::TooMany);
+    }
+    // SAFETY: as `input`, for `count` values in a row; their size does not
+    // overflow.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+/// Where the caller wants a value; it need not hold one yet.
+pub(crate) struct Output<T>(*mut T);
+
+pub(crate) fn output<T>(pointer: *mut T) -> Result<Output<T>, PlannerResult> {
+    check(pointer)?;
+    Ok(Output(pointer))
+}
+
+impl<T> Output<T> {
+    pub(crate) fn write(self, value: T) {
+        // SAFETY: not null, aligned, and by the header's contract memory for a T.
+        // No reference to it exists.
+        unsafe { self.0.write(value) }
+    }
+}
+
+fn check<T>(pointer: *const T) -> Result<(), PlannerResult> {
+    if pointer.is_null() {
+        Err(PlannerResult::Null)
+    } else if !pointer.is_aligned() {
+        Err(PlannerResult::Misaligned)
+    } else {
+        Ok(())
+    }
+}

@@ -1,0 +1,21 @@
+//! Gives the image the memory layout of the chip, and defmt its section.
+
+use std::path::Path;
+use std::{env, fs};
+
+const LAYOUT: &str = "../../memory-layout.x";
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-changed={LAYOUT}");
+    if env::var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os != "none") {
+        return;
+    }
+    let out = env::var("OUT_DIR").expect("Cargo sets OUT_DIR");
+    fs::copy(LAYOUT, Path::new(&out).join("memory.x"))
+        .unwrap_or_else(|error| panic!("{LAYOUT}, the memory layout of the image: {error}"));
+    println!("cargo::rustc-link-search={out}");
+    for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
+        println!("cargo::rustc-link-arg={argument}");
+    }
+}

@@ -1,0 +1,83 @@
+//! The main loop: look, decide, move.
+
+use core::f32::consts::FRAC_PI_2;
+
+use embedded_hal::delay::DelayNs;
+use embedded_hal::digital::OutputPin;
+use embedded_hal::i2c::I2c;
+use embedded_hal::pwm::SetDutyCycle;
+use planner_core::explorer::{Config, Explorer};
+use planner_core::sight::{Pose, RangeScan};
+use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId};
+use static_cell::ConstStaticCell;
+
+use crate::rangers::{CELL_MM, MAX_RANGE, Rangers};
+use crate::wheels::Wheels;
+
+/// The planner's whole memory, for a map of 64×64 cells: 16×16 metres.
+static EXPLORER: ConstStaticCell<Explorer<8, 8>> = ConstStaticCell::new(Explorer::vacant());
+
+const EXTENT: Extent = Extent::new(64, 64);
+/// Where the robot is switched on: in the middle of the map, looking east.
+const START: Cell = Cell::new(32, 32);
+
+/// Explores, and then rests.
+pub(crate) fn run<I, P, Q, A, B, D>(mut rangers: Rangers<I>, mut wheels: Wheels<P, Q, A, B, D>) -> !
+where
+    I: I2c,
+    P: SetDutyCycle,
+    Q: SetDutyCycle,
+    A: OutputPin,
+    B: OutputPin,
+    D: DelayNs,
+{
+    let explorer = EXPLORER.take();
+    let mut config = Config::new();
+    config.link.cell_mm = CELL_MM;
+    if let Err(error) = explorer.reset(config, RobotId(0), EXTENT, START) {
+        defmt::panic!("{}", error);
+    }
+    let (mut position, mut heading) = (START, Direction::East);
+    loop {
+        let scan = RangeScan {
+            pose: pose(position, heading),
+            max_range: MAX_RANGE,
+            beams: &rangers.scan(),
+        };
+        match scan.sighting() {
+            Ok(sighting) => {
+                let learnt = explorer.observe(&sighting);
+                defmt::debug!("at {}: learnt {}", position, learnt);
+            }
+            Err(error) => defmt::warn!("a scan without a use: {}", error),
+        }
+        // With a radio: `explorer.transmit` until it returns `None`, and
+        // `explorer.receive` for every packet that has come in.
+        match explorer.tick() {
+            Action::Move(direction) => {
+                wheels.go(heading, direction);
+                heading = direction;
+                position = position.step(direction);
+                // A robot that notices that it was stopped reports `Motion::Blocked`
+                // and stays where it is.
+                explorer.report(Motion::Moved);
+            }
+            Action::Wait => wheels.wait(),
+            Action::Stop(stop) => {
+                defmt::info!("{}; {=u32} cells known", stop, explorer.map().known_cells());
+                loop {
+                    cortex_m::asm::wfi();
+                }
+            }
+        }
+    }
+}
+
+/// The middle of a cell.
+fn pose(cell: Cell, heading: Direction) -> Pose {
+    Pose {
+        x: f32::from(cell.x) + 0.5,
+        y: f32::from(cell.y) + 0.5,
+        heading: f32::from(heading as u8) * FRAC_PI_2,
+    }
+}

@@ -4,6 +4,8 @@ use crate::map::{TileIndex, TileSet};
 
 /// Every so many tiles one is sent in turn, whatever else waits.
 const TURN: u8 = 8;
+/// Of the others, every so many one is a repetition, as long as there is one due.
+const REPEAT: u8 = 3;
 /// Unknown tiles that the turn passes over at a time.
 const STRIDE: u8 = 8;
 
@@ -11,8 +13,9 @@ const STRIDE: u8 = 8;
 /// tile in turn, for those who missed it or came late.
 ///
 /// Nothing starves: new tiles are taken round and round, so one that keeps
-/// changing waits for the others; and every [`TURN`]th tile is the turn's, so
-/// every known tile is sent again and again as long as the robot may send.
+/// changing waits for the others; while they come faster than they can be sent,
+/// some of the tiles are repetitions all the same; and every [`TURN`]th tile is the
+/// turn's, so every known tile is sent again and again as long as the robot may send.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outbox<const TH: usize> {
     fresh: TileSet<TH>,
@@ -50,19 +53,30 @@ impl<const TH: usize> Outbox<TH> {
     ) -> Option<TileIndex> {
         self.since_turn += 1;
         if self.since_turn < TURN {
-            if let Some(tile) = self.fresh.pop_after(self.last) {
-                self.again.insert(tile);
-                self.last = tile;
-                return Some(tile);
-            }
-            if let Some(tile) = self.again.pop_first() {
-                return Some(tile);
+            let repeats = self.since_turn.is_multiple_of(REPEAT);
+            let sent = if repeats { self.repeat() } else { None };
+            let sent = sent.or_else(|| self.tell()).or_else(|| self.repeat());
+            if sent.is_some() {
+                return sent;
             }
         }
         self.since_turn = 0;
         (0..STRIDE)
             .map(|_| self.take_turn(tile_extent))
             .find(|&tile| is_worth_sending(tile))
+    }
+
+    /// A tile that has changed.
+    fn tell(&mut self) -> Option<TileIndex> {
+        let tile = self.fresh.pop_after(self.last)?;
+        self.again.insert(tile);
+        self.last = tile;
+        Some(tile)
+    }
+
+    /// A tile that was sent once since it changed.
+    fn repeat(&mut self) -> Option<TileIndex> {
+        self.again.pop_after(self.last)
     }
 
     fn take_turn(&mut self, (columns, rows): (u8, u8)) -> TileIndex {

@@ -48,13 +48,13 @@ proptest! {
         let changed = set(&changed);
         outbox.add(&changed);
         let count = changed.iter().count();
-        // Every eighth tile is another.
-        let slots = count + count / 7 + 1;
+        // Of eight tiles two are repetitions, and one is the turn's.
+        let slots = count + 3 * count / 5 + 2;
         let mut send = |slots: usize| -> Vec<_> {
             (0..slots).filter_map(|_| outbox.next(TILES, |_| true)).collect()
         };
         let first = send(slots);
-        let then = send(slots + 1);
+        let then = send(slots);
         for at in changed.iter() {
             prop_assert!(first.contains(&at));
             prop_assert!(first.iter().chain(&then).filter(|&&sent| sent == at).count() > 1);
@@ -84,7 +84,8 @@ proptest! {
         let mut outbox = Small::new();
         outbox.add(&set(&[new]));
         let changing = set(&changing);
-        let slots = changing.iter().count() + changing.iter().count() / 7 + 3;
+        let count = changing.iter().count() + 1;
+        let slots = count + 3 * count / 5 + 3;
         let sent = (0..slots).any(|_| {
             outbox.add(&changing);
             outbox.next(TILES, |_| true) == Some(tile(new))

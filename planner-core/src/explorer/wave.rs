@@ -108,15 +108,15 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     }
 
     /// The tile of this wave, empty where it has not been.
-    fn tile(&self, at: TileIndex) -> WaveTile {
+    fn tile(&self, at: TileIndex) -> &WaveTile {
+        const EMPTY: &WaveTile = &WaveTile::EMPTY;
         if !self.touched.contains(at) {
-            return WaveTile::EMPTY;
+            return EMPTY;
         }
         self.tiles
             .get(usize::from(at.y))
             .and_then(|row| row.get(usize::from(at.x)))
-            .copied()
-            .unwrap_or(WaveTile::EMPTY)
+            .unwrap_or(EMPTY)
     }
 
     fn tile_mut(&mut self, at: TileIndex) -> Option<&mut WaveTile> {

@@ -35,10 +35,6 @@ impl PlannerConfig {
 
 /// What the simulator asks for: a verb of the planner, or something about it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is one at a time, and no heap on the chip"
-)]
 pub enum Request<'a> {
     /// Sets up a planner. The first request; answered by a [`Welcome`].
     Start {

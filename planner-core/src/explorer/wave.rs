@@ -66,6 +66,9 @@ impl WaveTile {
     }
 }
 
+/// What a wave has left where it has not been.
+const EMPTY: &WaveTile = &WaveTile::EMPTY;
+
 /// The state of a wave over a map of `TW`×`TH` tiles.
 pub(crate) struct Wave<const TW: usize, const TH: usize> {
     tiles: [[WaveTile; TW]; TH],
@@ -116,20 +119,19 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     }
 
     /// The tile of this wave, empty where it has not been.
-    fn tile(&self, at: TileIndex) -> WaveTile {
+    fn tile(&self, at: TileIndex) -> &WaveTile {
         if self.touched.contains(at) {
             self.stored(at)
         } else {
-            WaveTile::EMPTY
+            EMPTY
         }
     }
 
-    fn stored(&self, at: TileIndex) -> WaveTile {
+    fn stored(&self, at: TileIndex) -> &WaveTile {
         self.tiles
             .get(usize::from(at.y))
             .and_then(|row| row.get(usize::from(at.x)))
-            .copied()
-            .unwrap_or(WaveTile::EMPTY)
+            .unwrap_or(EMPTY)
     }
 
     fn tile_mut(&mut self, at: TileIndex) -> Option<&mut WaveTile> {

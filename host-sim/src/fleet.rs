@@ -21,6 +21,10 @@ pub struct Robot<const TW: usize, const TH: usize> {
     pub alive: bool,
     /// What it did in the last tick; `None` before the first and after death.
     pub step: Option<Step>,
+    /// What it has sent in this tick.
+    pub sent: Sent,
+    /// Whether its body is in the world.
+    is_there: bool,
     /// Whether it has exchanged its role in this tick.
     has_exchanged: bool,
 }
@@ -34,6 +38,17 @@ pub struct Step {
     pub deed: Deed,
     /// Work of its planner.
     pub work: u32,
+    /// What it sent.
+    pub sent: Sent,
+}
+
+/// What a robot sent by radio.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sent {
+    /// Number of frames.
+    pub frames: u32,
+    /// Their bytes.
+    pub bytes: u32,
 }
 
 /// What a decision came to.
@@ -57,11 +72,15 @@ pub enum Deed {
     Stopped(Stop),
 }
 
-/// What goes wrong, and when.
+/// What goes wrong with robots and cells, and when.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Faults {
     /// Robots that die.
     pub deaths: Vec<Death>,
+    /// Robots that come late.
+    pub arrivals: Vec<Arrival>,
+    /// Robots that lose their memory.
+    pub restarts: Vec<Restart>,
     /// Cells that nobody can enter for a while, and that no sensor shows.
     pub closures: Vec<Closure>,
 }
@@ -72,6 +91,24 @@ pub struct Death {
     /// Which one.
     pub robot: RobotId,
     /// The first tick in which it does nothing.
+    pub tick: u32,
+}
+
+/// A robot is not in the world before a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Arrival {
+    /// Which one.
+    pub robot: RobotId,
+    /// The first tick in which it stands on its start.
+    pub tick: u32,
+}
+
+/// A robot starts anew where it stands, with an empty map, also if it was dead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Restart {
+    /// Which one.
+    pub robot: RobotId,
+    /// The first tick after its memory was lost.
     pub tick: u32,
 }
 
@@ -97,22 +134,25 @@ pub struct Violation {
     pub into: Cell,
 }
 
-/// How the robots of a fleet share the world and talk.
+/// How the robots of a fleet share the world.
 #[derive(Clone, Debug, Default)]
 pub struct Rules {
-    /// Ticks between two exchanges; 0: never.
-    pub sync: u32,
     /// Whether a cell holds at most one robot.
     pub solid: bool,
     /// What goes wrong.
     pub faults: Faults,
 }
 
+/// Makes the planner of a robot that stands on a cell and knows nothing.
+pub type Build<const TW: usize, const TH: usize> =
+    Box<dyn Fn(RobotId, Cell) -> Box<dyn Planner<TW, TH>>>;
+
 /// All robots of a run, in one world.
 pub struct Fleet<const TW: usize, const TH: usize> {
     sensor: Arc<Sensor>,
     medium: Box<dyn Medium<TW, TH>>,
     rules: Rules,
+    build: Build<TW, TH>,
     robots: Vec<Robot<TW, TH>>,
     violations: Vec<Violation>,
     all_tiles: TileSet<TH>,
@@ -120,33 +160,38 @@ pub struct Fleet<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
-    /// A fleet of one robot for each planner and start, in this order.
+    /// A fleet of one robot for each start, in this order.
     pub fn new(
         sensor: Arc<Sensor>,
         medium: Box<dyn Medium<TW, TH>>,
         rules: Rules,
-        planners: impl IntoIterator<Item = (Box<dyn Planner<TW, TH>>, Cell)>,
+        build: Build<TW, TH>,
+        starts: &[Cell],
     ) -> Self {
         let mut all_tiles = TileSet::new();
         for (y, x) in (0..TH as u8).flat_map(|y| (0..TW as u8).map(move |x| (y, x))) {
             all_tiles.insert(TileIndex::new(x, y));
         }
-        let robots = planners
-            .into_iter()
-            .zip(0..)
-            .map(|((planner, start), id)| Robot {
-                id: RobotId(id),
-                planner,
+        let robot = |(&start, id)| {
+            let id = RobotId(id);
+            let is_there = !rules.faults.arrivals.iter().any(|of| of.robot == id);
+            Robot {
+                id,
+                planner: build(id, start),
                 position: start,
-                alive: true,
+                alive: is_there,
                 step: None,
+                sent: Sent::default(),
+                is_there,
                 has_exchanged: false,
-            })
-            .collect();
+            }
+        };
+        let robots = starts.iter().zip(0..).map(robot).collect();
         Self {
             sensor,
             medium,
             rules,
+            build,
             robots,
             violations: Vec::new(),
             all_tiles,
@@ -169,45 +214,66 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         &self.violations
     }
 
-    /// Whether every living robot has stopped.
+    /// Whether every living robot has stopped, and none is still to come.
     pub fn has_stopped(&self) -> bool {
-        self.robots.iter().all(|robot| {
-            let stopped = |step: Step| matches!(step.deed, Deed::Stopped(_));
-            !robot.alive || robot.step.is_some_and(stopped)
-        })
+        let faults = &self.rules.faults;
+        let arrivals = faults.arrivals.iter().map(|arrival| arrival.tick);
+        let mut births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
+        births.all(|tick| tick < self.tick)
+            && self.robots.iter().all(|robot| {
+                let stopped = |step: Step| matches!(step.deed, Deed::Stopped(_));
+                !robot.alive || robot.step.is_some_and(stopped)
+            })
     }
 
     /// One tick: all look, then all talk if it is time, then one after another
     /// decides and moves.
     pub fn tick(&mut self) {
-        for death in &self.rules.faults.deaths {
-            if death.tick == self.tick
-                && let Some(robot) = self.robots.get_mut(usize::from(death.robot.0))
-            {
-                robot.alive = false;
-                robot.step = None;
-            }
-        }
+        self.meet_fate();
         for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
             let view = self.sensor.view(robot.position);
             robot.planner.observe(&view.sighting);
             robot.has_exchanged = false;
+            robot.sent = Sent::default();
         }
-        if self.rules.sync != 0 && self.tick.is_multiple_of(self.rules.sync) {
-            self.medium.exchange(&mut self.robots);
-        }
+        self.medium.exchange(self.tick, &mut self.robots);
         for index in 0..self.robots.len() {
             let robot = &self.robots[index];
             if robot.alive {
-                let at = robot.position;
+                let (at, sent) = (robot.position, robot.sent);
                 let (deed, work) = match robot.has_exchanged {
                     true => (Deed::Yielded, 0),
                     false => (self.act(index), self.robots[index].planner.work()),
                 };
-                self.robots[index].step = Some(Step { at, deed, work });
+                self.robots[index].step = Some(Step {
+                    at,
+                    deed,
+                    work,
+                    sent,
+                });
             }
         }
         self.tick += 1;
+    }
+
+    /// Deaths, arrivals and restarts of this tick.
+    fn meet_fate(&mut self) {
+        let faults = &self.rules.faults;
+        for robot in &mut self.robots {
+            let now = |id: RobotId, tick: u32| id == robot.id && tick == self.tick;
+            if faults.deaths.iter().any(|of| now(of.robot, of.tick)) {
+                robot.alive = false;
+                robot.step = None;
+            }
+            if faults.arrivals.iter().any(|of| now(of.robot, of.tick)) {
+                robot.alive = true;
+                robot.is_there = true;
+            }
+            if faults.restarts.iter().any(|of| now(of.robot, of.tick)) && robot.is_there {
+                robot.alive = true;
+                robot.planner = (self.build)(robot.id, robot.position);
+            }
+        }
     }
 
     fn act(&mut self, index: usize) -> Deed {
@@ -243,7 +309,8 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     }
 
     fn holder(&self, cell: Cell) -> Option<usize> {
-        self.robots.iter().position(|robot| robot.position == cell)
+        let stands_there = |robot: &Robot<TW, TH>| robot.is_there && robot.position == cell;
+        self.robots.iter().position(stands_there)
     }
 
     fn can_be_entered(&mut self, index: usize, cell: Cell) -> bool {

@@ -11,6 +11,7 @@ mod coverage;
 pub mod draw;
 pub mod experiments;
 pub mod fleet;
+pub mod live;
 pub mod medium;
 pub mod peers;
 pub mod planners;

@@ -21,6 +21,13 @@ enum Command {
     Figures(command::Figures),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
+    /// Serve a map to robots that are processes of their own.
+    ///
+    /// Exit status: 0 every reachable cell was seen and every robot has stopped,
+    /// 1 something was left, 2 bad input.
+    World(command::World),
+    /// Be one robot in a served world; talks to the others by UDP.
+    Robot(command::Robot),
 }
 
 fn main() -> ExitCode {
@@ -29,6 +36,8 @@ fn main() -> ExitCode {
         Command::Compare(compare) => compare.run(),
         Command::Figures(figures) => figures.run(),
         Command::Generate(generate) => generate.run(),
+        Command::World(world) => world.run(),
+        Command::Robot(robot) => robot.run(),
     };
     done.unwrap_or_else(|error| {
         eprintln!("error: {error}");

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::ExtentError;
+use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
@@ -38,30 +39,17 @@ pub enum PlannerKind {
 }
 
 impl PlannerKind {
-    /// The planners of a team, by id: each as by [`build`](Self::build), but
-    /// those that work by marks share them, and meet where the first one starts.
-    ///
-    /// # Errors
-    /// A grid that a map of `TW`×`TH` tiles does not hold.
-    pub fn team<const TW: usize, const TH: usize>(
-        self,
-        range: u8,
-        extent: Extent,
-        starts: &[Cell],
-    ) -> Result<Vec<Box<dyn Planner<TW, TH>>>, ExtentError> {
-        let shared = starts.first().map(|&start| Marks::new(extent, start));
-        let robot = |(&start, id)| match (self, &shared) {
-            (Self::Bmilrv, Some(marks)) => {
-                let robot = Bmilrv::new(marks.clone(), RobotId(id), extent, start)?;
-                Ok(Box::new(robot) as _)
-            }
-            _ => self.build(RobotId(id), range, extent, start),
-        };
-        starts.iter().zip(0..).map(robot).collect()
+    /// How many times longer than others this planner may take: BMILRV goes
+    /// round loops many times.
+    pub fn patience(self) -> u32 {
+        match self {
+            Self::Bmilrv => 12,
+            _ => 1,
+        }
     }
 
     /// The planner of robot `id`, which sees `range` cells far and starts at
-    /// `start` on a grid of `extent`.
+    /// `start` on a grid of `extent`, and uses the radio by `link`.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
@@ -71,23 +59,43 @@ impl PlannerKind {
         range: u8,
         extent: Extent,
         start: Cell,
+        link: LinkConfig,
+    ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+        self.build_among(&Marks::new(extent, start), id, range, extent, start, link)
+    }
+
+    /// The same, in a team that shares `marks`, if the planner works by marks.
+    ///
+    /// # Errors
+    /// A grid that a map of `TW`×`TH` tiles does not hold.
+    pub fn build_among<const TW: usize, const TH: usize>(
+        self,
+        marks: &Marks,
+        id: RobotId,
+        range: u8,
+        extent: Extent,
+        start: Cell,
+        link: LinkConfig,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         Ok(match self {
             Self::Explorer => {
+                let config = explorer::Config {
+                    link,
+                    ..explorer::Config::new()
+                };
                 let mut explorer = Box::new(Explorer::vacant());
-                explorer.reset(explorer::Config::new(), id, extent, start)?;
+                explorer.reset(config, id, extent, start)?;
                 explorer
             }
-            Self::LocalFrontiers => local_frontiers(false, id, extent, start)?,
-            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start)?,
-            Self::Closest => Box::new(Peer::new(Closest, id, extent, start)?),
-            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start)?),
-            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start)?),
-            Self::MinPosStrong => Box::new(Peer::new(StrongMinPos::default(), id, extent, start)?),
-            Self::Bmilrv => {
-                let marks = Marks::new(extent, start);
-                Box::new(Bmilrv::new(marks, id, extent, start)?)
+            Self::LocalFrontiers => local_frontiers(false, id, extent, start, link)?,
+            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start, link)?,
+            Self::Closest => Box::new(Peer::new(Closest, id, extent, start, link)?),
+            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start, link)?),
+            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
+            Self::MinPosStrong => {
+                Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
             }
+            Self::Bmilrv => Box::new(Bmilrv::new(marks.clone(), id, extent, start, link)?),
         })
     }
 }
@@ -97,9 +105,11 @@ fn local_frontiers<const TW: usize, const TH: usize>(
     id: RobotId,
     extent: Extent,
     start: Cell,
+    link: LinkConfig,
 ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
     let config = local_frontiers::Config {
         second_chance,
+        link,
         ..Default::default()
     };
     let mut planner = Box::new(LocalFrontiers::vacant());

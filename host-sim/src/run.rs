@@ -1,16 +1,21 @@
 //! From a scenario to what happened.
 
+mod book;
+
 use std::sync::Arc;
 
+use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::{Cell, Extent, Stop, sight};
 use thiserror::Error;
 
-use crate::coverage::Coverage;
-use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Violation};
-use crate::medium::Ideal;
+use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
+use crate::medium::{AirFaults, MediumKind};
+use crate::peers::Marks;
 use crate::planners::PlannerKind;
+use book::Book;
+
 use crate::sensor::Sensor;
-use crate::trace::{Record, Trace};
+use crate::trace::Trace;
 use crate::world::{Reachable, World};
 
 /// Everything that a run follows from. The same scenario gives the same run on
@@ -25,17 +30,24 @@ pub struct Scenario {
     pub planner: PlannerKind,
     /// Sensor range in cells, 1 to 15.
     pub range: u8,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
     /// Ticks between two exchanges among robots; 0: never.
     pub sync: u32,
+    /// Bytes that a robot may send by radio in a tick on average. Less than a
+    /// frame: it sends one every few ticks.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
+    /// What else goes wrong in the air.
+    pub air: AirFaults,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell holds at most one robot.
     pub solid: bool,
     /// The run ends after this many ticks.
     pub max_ticks: u32,
-    /// What goes wrong.
+    /// What goes wrong with robots and cells.
     pub faults: Faults,
 }
 
@@ -49,8 +61,13 @@ pub enum ScenarioError {
     #[error("a sensor range of {0} cells; expected 1 to {max}", max = sight::MAX_RADIUS)]
     Range(u8),
     /// See the message.
-    #[error("a loss of {0}; expected 0 (none) to 1 (all)")]
-    Loss(f64),
+    #[error("a share of {share} for {name}; expected 0 (none) to 1 (all)")]
+    Share {
+        /// Of what.
+        name: &'static str,
+        /// How much.
+        share: f64,
+    },
     /// See the message.
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start {
@@ -72,18 +89,21 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// A scenario with the defaults: sensor range 5, exchange in every tick, no
-    /// loss, shared cells, seed 0, no faults, and ticks enough for any planner
-    /// that gets anywhere.
+    /// A scenario with the defaults: sensor range 5, the ideal medium with an
+    /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
+    /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
-        let max_ticks = default_max_ticks(&world.reachable(&starts), planner);
+        let max_ticks = planner.patience() * default_max_ticks(&world.reachable(&starts));
         Self {
             world,
             starts,
             planner,
             range: 5,
+            medium: MediumKind::Ideal,
             sync: 1,
+            byte_budget: MAX_LEN as u16,
             loss: 0.0,
+            air: AirFaults::default(),
             seed: 0,
             solid: false,
             max_ticks,
@@ -103,8 +123,14 @@ impl Scenario {
         if !(1..=sight::MAX_RADIUS).contains(&self.range) {
             return Err(ScenarioError::Range(self.range));
         }
-        if !(0.0..=1.0).contains(&self.loss) {
-            return Err(ScenarioError::Loss(self.loss));
+        for (name, share) in [
+            ("loss", self.loss),
+            ("duplication", self.air.duplication),
+            ("corruption", self.air.corruption),
+        ] {
+            if !(0.0..=1.0).contains(&share) {
+                return Err(ScenarioError::Share { name, share });
+            }
         }
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
@@ -124,16 +150,11 @@ impl Scenario {
     }
 }
 
-/// Ticks after which a run is given up if nobody says otherwise: a thousand, and
-/// eight for each cell that can be reached, of which one robot that walks to
-/// every cell and back needs two. BMILRV may go round many loops many times: a
-/// hundred for each cell.
-pub fn default_max_ticks(reachable: &Reachable, planner: PlannerKind) -> u32 {
-    let each = match planner {
-        PlannerKind::Bmilrv => 100,
-        _ => 8,
-    };
-    1000 + each * reachable.count()
+/// Ticks after which a run is given up if nobody says otherwise: eight for each
+/// cell that can be reached, and a thousand. One robot that walks to every cell
+/// and back needs two. Multiplied by [`PlannerKind::patience`].
+pub fn default_max_ticks(reachable: &Reachable) -> u32 {
+    1000 + 8 * reachable.count()
 }
 
 /// What happened in a run.
@@ -176,8 +197,12 @@ pub struct RobotOutcome {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that another living robot's map holds and its own lacks, if it lives.
+    pub cells_unheard: u32,
     /// Work of its planner over the run.
     pub work: u64,
+    /// What it sent by radio over the run.
+    pub sent: Sent,
     /// Why it stopped; `None` if it did not.
     pub stop: Option<Stop>,
     /// Whether it lived to the end of the run.
@@ -229,6 +254,11 @@ impl Outcome {
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
+    }
+
+    /// Whether all living robots know the same cells in the end.
+    pub fn maps_agree(&self) -> bool {
+        self.robots.iter().all(|robot| robot.cells_unheard == 0)
     }
 
     /// Share of the seen cells that more than one robot saw with its own
@@ -289,18 +319,28 @@ pub fn fleet<const TW: usize, const TH: usize>(
 ) -> Fleet<TW, TH> {
     let extent = scenario.world.extent();
     let rules = Rules {
-        sync: scenario.sync,
         solid: scenario.solid,
         faults: scenario.faults.clone(),
     };
-    let planners = scenario
-        .planner
-        .team(scenario.range, extent, &scenario.starts)
-        .expect("the compiled size holds the world")
-        .into_iter()
-        .zip(scenario.starts.iter().copied());
-    let medium = Box::new(Ideal::new(scenario.loss, scenario.seed));
-    Fleet::new(sensor, medium, rules, planners)
+    let link = LinkConfig {
+        bytes_per_tick: scenario.byte_budget,
+        ..LinkConfig::new()
+    };
+    let (planner, range) = (scenario.planner, scenario.range);
+    let marks = Marks::new(extent, scenario.starts[0]);
+    let build = Box::new(move |id, start| {
+        planner
+            .build_among(&marks, id, range, extent, start, link)
+            .expect("the compiled size holds the world")
+    });
+    let medium = scenario.medium.build(
+        scenario.sync,
+        scenario.loss,
+        scenario.air.clone(),
+        scenario.seed,
+        scenario.world.clone(),
+    );
+    Fleet::new(sensor, medium, rules, build, &scenario.starts)
 }
 
 /// Runs a checked scenario on maps of `TW`×`TH` tiles. The result does not
@@ -326,133 +366,4 @@ pub fn run_compiled<const TW: usize, const TH: usize>(
         }
     }
     book.close(scenario, &fleet)
-}
-
-/// What is written down while a run goes on.
-struct Book {
-    sensor: Arc<Sensor>,
-    reachable: Reachable,
-    coverage: Coverage,
-    looked_from: Vec<Option<Cell>>,
-    outcome: Outcome,
-    records: Option<Vec<Record>>,
-}
-
-impl Book {
-    fn new(scenario: &Scenario, sensor: Arc<Sensor>, trace: bool) -> Self {
-        let robots = scenario.starts.len();
-        let reachable = scenario.world.reachable(&scenario.starts);
-        let outcome = Outcome {
-            ticks: 0,
-            ticks_to_seen: None,
-            ticks_to_stopped: None,
-            reachable_cells: reachable.count(),
-            seen_cells: 0,
-            shared_cells: 0,
-            max_work_per_tick: 0,
-            coverage: Vec::new(),
-            assignments: Assignments::default(),
-            robots: vec![
-                RobotOutcome {
-                    steps: 0,
-                    blocked_steps: 0,
-                    cells_known: 0,
-                    cells_missed: 0,
-                    work: 0,
-                    stop: None,
-                    alive: true,
-                };
-                robots
-            ],
-            violations: Vec::new(),
-        };
-        Self {
-            coverage: Coverage::new(&scenario.world, &reachable, robots),
-            sensor,
-            reachable,
-            looked_from: vec![None; robots],
-            outcome,
-            records: trace.then(Vec::new),
-        }
-    }
-
-    /// Takes down the last tick.
-    fn note<const TW: usize, const TH: usize>(&mut self, fleet: &Fleet<TW, TH>) {
-        let tick = fleet.ticks() - 1;
-        for (index, robot) in fleet.robots().iter().enumerate() {
-            let Some(step) = robot.step else { continue };
-            if self.looked_from[index] != Some(step.at) {
-                self.looked_from[index] = Some(step.at);
-                self.coverage.look(index, self.sensor.view(step.at));
-            }
-            let noted = &mut self.outcome.robots[index];
-            noted.work += u64::from(step.work);
-            noted.stop = None;
-            match step.deed {
-                Deed::Moved(_) => noted.steps += 1,
-                Deed::Blocked(_) => noted.blocked_steps += 1,
-                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded | Deed::Waited => {}
-                Deed::Stopped(stop) => noted.stop = Some(stop),
-            }
-            let most = &mut self.outcome.max_work_per_tick;
-            *most = step.work.max(*most);
-            if let Some(records) = &mut self.records {
-                records.push(Record::new(tick, robot, step));
-            }
-        }
-        let living = fleet.robots().iter().filter(|robot| robot.alive);
-        let outcome = &mut self.outcome;
-        outcome
-            .assignments
-            .add(living.filter_map(|robot| robot.planner.assignment()));
-        outcome.ticks = fleet.ticks();
-        outcome.seen_cells = self.coverage.seen_cells();
-        outcome.coverage.push(outcome.seen_cells);
-        if outcome.seen_cells == outcome.reachable_cells {
-            outcome.ticks_to_seen.get_or_insert(tick);
-        }
-        if fleet.has_stopped() {
-            outcome.ticks_to_stopped.get_or_insert(tick);
-        }
-    }
-
-    fn progress(&self) -> Progress {
-        Progress {
-            ticks: self.outcome.ticks,
-            seen_cells: self.outcome.seen_cells,
-            reachable_cells: self.outcome.reachable_cells,
-        }
-    }
-
-    fn close<const TW: usize, const TH: usize>(
-        mut self,
-        scenario: &Scenario,
-        fleet: &Fleet<TW, TH>,
-    ) -> (Outcome, Option<Trace>) {
-        self.outcome.shared_cells = self.coverage.shared_cells();
-        self.outcome.violations = fleet.violations().to_vec();
-        for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
-            let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
-            noted.alive = robot.alive;
-            noted.cells_known = robot.planner.map().known_cells();
-            noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
-        }
-        let trace = self.records.map(|records| Trace::new(scenario, records));
-        (self.outcome, trace)
-    }
-}
-
-/// Cells that `robot` could reach and does not know.
-fn missed<const TW: usize, const TH: usize>(
-    world: &World,
-    all: &Reachable,
-    robot: &Robot<TW, TH>,
-    start: Cell,
-) -> u32 {
-    let lacks = |cell: &Cell| !robot.planner.map().is_known(*cell);
-    if all.cells().any(|cell| lacks(&cell)) {
-        world.reachable(&[start]).cells().filter(lacks).count() as u32
-    } else {
-        0
-    }
 }

@@ -3,6 +3,7 @@
 use planner_core::Stop;
 use serde::Serialize;
 
+use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome, Scenario};
 
@@ -28,6 +29,10 @@ pub struct Summary {
     pub overlap: f64,
     /// Largest work of one planner in one tick.
     pub max_work_per_tick: u32,
+    /// Whether all living robots know the same cells in the end.
+    pub maps_agree: bool,
+    /// Why they do not.
+    pub maps_differ_because: Option<&'static str>,
     /// Moves into obstacles; anything but 0 is a bug of the planner.
     pub violations: usize,
     /// [`Trace::digest`](crate::trace::Trace::digest).
@@ -38,10 +43,16 @@ pub struct Summary {
     pub planner: PlannerKind,
     /// Sensor range in cells.
     pub range: u8,
+    /// What carried what robots told each other.
+    pub medium: MediumKind,
     /// Ticks between two exchanges; 0: never.
     pub sync: u32,
+    /// Bytes that a robot might send by radio in a tick on average.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
+    /// What else went wrong in the air.
+    pub air: AirFaults,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell held at most one robot.
@@ -63,8 +74,14 @@ pub struct RobotSummary {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that another living robot's map holds and its own lacks.
+    pub cells_unheard: u32,
     /// Work of its planner over the run.
     pub work: u64,
+    /// Frames sent by radio.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
     /// `complete`, `enclosed`, `blocked`, `back-at-start`, `no-trace`; `null`
     /// if it had not stopped.
     pub stop: Option<&'static str>,
@@ -88,13 +105,19 @@ impl Summary {
             unreachable_cells: free - outcome.reachable_cells,
             overlap: outcome.overlap(),
             max_work_per_tick: outcome.max_work_per_tick,
+            maps_agree: outcome.maps_agree(),
+            maps_differ_because: (!outcome.maps_agree())
+                .then(|| why_maps_differ(scenario, outcome)),
             violations: outcome.violations.len(),
             trace_digest,
             map: scenario.world.name().into(),
             planner: scenario.planner,
             range: scenario.range,
+            medium: scenario.medium,
             sync: scenario.sync,
+            byte_budget: scenario.byte_budget,
             loss: scenario.loss,
+            air: scenario.air.clone(),
             seed: scenario.seed,
             solid: scenario.solid,
             robots: scenario
@@ -115,7 +138,10 @@ impl RobotSummary {
             blocked_steps: robot.blocked_steps,
             cells_known: robot.cells_known,
             cells_missed: robot.cells_missed,
+            cells_unheard: robot.cells_unheard,
             work: robot.work,
+            frames_sent: robot.sent.frames,
+            bytes_sent: robot.sent.bytes,
             stop: robot.stop.map(stop_name),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             alive: robot.alive,
@@ -130,5 +156,24 @@ fn stop_name(stop: Stop) -> &'static str {
         Stop::Blocked { .. } => "blocked",
         Stop::BackAtStart { .. } => "back-at-start",
         Stop::NoTrace { .. } => "no-trace",
+    }
+}
+
+fn why_maps_differ(scenario: &Scenario, outcome: &Outcome) -> &'static str {
+    let Scenario { air, faults, .. } = scenario;
+    if scenario.sync == 0 || scenario.medium == MediumKind::Radio && scenario.byte_budget == 0 {
+        "the robots never spoke"
+    } else if air.reach != Reach::Everywhere || !air.partitions.is_empty() {
+        "robots were out of each other's reach when the last one stopped"
+    } else if scenario.loss > 0.0 || air.corruption > 0.0 {
+        "messages were lost, and had not been repeated when the last robot stopped"
+    } else if outcome.ticks_to_stopped.is_none() {
+        "the run ended before every robot had stopped"
+    } else if air.delay > 0 || scenario.sync > 1 {
+        "the last messages were still to come when the last robot stopped"
+    } else if !faults.deaths.is_empty() || !faults.restarts.is_empty() {
+        "a robot had died, or had not been told everything again after its restart"
+    } else {
+        "what was seen last was still waiting for its turn when the last robot stopped"
     }
 }

@@ -8,8 +8,9 @@
 //! to run the scenario again or to redraw it.
 //!
 //! The digest is the first 16 hex digits of the SHA-256 of all records, each as
-//! 22 bytes, little-endian: tick `u32`, robot `u8`, x `i16`, y `i16`, action
-//! `u8`, goal x `i16`, goal y `i16`, known `u32`, work `u32`.
+//! 30 bytes, little-endian: tick `u32`, robot `u8`, x `i16`, y `i16`, action
+//! `u8`, goal x `i16`, goal y `i16`, known `u32`, work `u32`, frames `u32`,
+//! bytes `u32`.
 
 mod file;
 
@@ -20,12 +21,12 @@ use sha2::{Digest, Sha256};
 
 pub use file::TraceError;
 
-use crate::fleet::{Deed, Robot, Step};
+use crate::fleet::{Deed, Robot, Sent, Step};
 use crate::run::Scenario;
 
 /// The columns of a record.
-pub const COLUMNS: [&str; 9] = [
-    "tick", "robot", "x", "y", "action", "goal_x", "goal_y", "known", "work",
+pub const COLUMNS: [&str; 11] = [
+    "tick", "robot", "x", "y", "action", "goal_x", "goal_y", "known", "work", "frames", "bytes",
 ];
 
 /// A scenario and all that its robots did.
@@ -57,6 +58,8 @@ pub struct Record {
     pub known: u32,
     /// Work of its planner in this tick.
     pub work: u32,
+    /// What it sent by radio in this tick.
+    pub sent: Sent,
 }
 
 const WAITED: u8 = 16;
@@ -92,6 +95,7 @@ impl Record {
             goal: robot.planner.status().goal,
             known: robot.planner.map().known_cells(),
             work: step.work,
+            sent: step.sent,
         }
     }
 
@@ -108,9 +112,9 @@ impl Record {
         self.action >= STOPPED
     }
 
-    fn bytes(&self) -> [u8; 22] {
+    fn bytes(&self) -> [u8; 30] {
         let goal = self.goal.unwrap_or(NOWHERE);
-        let mut bytes = [0; 22];
+        let mut bytes = [0; 30];
         bytes[0..4].copy_from_slice(&self.tick.to_le_bytes());
         bytes[4] = self.robot;
         bytes[5..7].copy_from_slice(&self.at.x.to_le_bytes());
@@ -120,6 +124,8 @@ impl Record {
         bytes[12..14].copy_from_slice(&goal.y.to_le_bytes());
         bytes[14..18].copy_from_slice(&self.known.to_le_bytes());
         bytes[18..22].copy_from_slice(&self.work.to_le_bytes());
+        bytes[22..26].copy_from_slice(&self.sent.frames.to_le_bytes());
+        bytes[26..30].copy_from_slice(&self.sent.bytes.to_le_bytes());
         bytes
     }
 }
@@ -152,3 +158,6 @@ impl Trace {
         self.records.last().map_or(0, |record| record.tick + 1)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@ mod budget;
 mod checks;
 mod documents;
 mod firmware;
+mod fuzz;
 mod install;
 mod shell;
 
@@ -24,7 +25,7 @@ struct Cli {
 enum Task {
     /// Runs every check, and installs what it needs for that.
     ///
-    /// Rust targets, Miri and QEMU are installed when they are missing. Where
+    /// Rust targets, Miri, cargo-fuzz and QEMU are installed when they are missing. Where
     /// that is not possible, the check fails and prints the command to run.
     /// All checks run, also after one has failed.
     Test {
@@ -40,6 +41,12 @@ enum Task {
     BuildFirmware,
     /// Builds the image and runs it in QEMU (an emulated STM32F405).
     RunFirmware,
+    /// Fuzzes the radio: each target for so many seconds.
+    Fuzz {
+        /// For how long, each.
+        #[arg(long, value_name = "N", default_value_t = 600)]
+        seconds: u32,
+    },
     /// Explores random small worlds until one of them goes wrong.
     Soak {
         /// How many worlds.
@@ -57,6 +64,7 @@ fn main() -> ExitCode {
         Task::Test { only, .. } => checks::run(&only),
         Task::BuildFirmware => firmware::build().map(|image| println!("{image}")),
         Task::RunFirmware => firmware::build_and_run(),
+        Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::Soak { runs } => soak(runs),
     };
     match outcome {

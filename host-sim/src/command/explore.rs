@@ -8,12 +8,14 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw;
+use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
 use host_sim::run::{self, Options, Progress, Scenario};
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Cell;
+use planner_core::radio::MAX_LEN;
 
 use super::Done;
 use super::folder::Folder;
@@ -37,12 +39,28 @@ pub(crate) struct Explore {
     /// Sensor range in cells, 1 to 15.
     #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=15))]
     range: u8,
-    /// Ticks between two exchanges of maps; 0: never.
+    /// How robots tell each other what they know: in radio frames of at most 55
+    /// bytes, or ideally, whole maps at once as in the papers.
+    #[arg(long, value_name = "NAME", default_value = "radio")]
+    medium: MediumKind,
+    /// Ticks between two exchanges of maps, or between two transmissions of a
+    /// robot; 0: never.
     #[arg(long, value_name = "D", default_value_t = 1)]
     sync: u32,
     /// Share of messages lost, 0 to 1.
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
     loss: f64,
+    /// Who hears whom: all, sight (no obstacle between), or the number of cells
+    /// that robots may be apart.
+    #[arg(long, value_name = "WHO", default_value = "all", value_parser = parse_reach)]
+    radio_range: Reach,
+    /// Bytes that a robot may send by radio in a tick on average; less than a
+    /// frame: one every few ticks.
+    #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
+    byte_budget: u16,
+    /// Share of radio frames that arrive with wrong bits or cut short, 0 to 1.
+    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
+    corrupt: f64,
     /// Seed of all chance in the run.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -50,7 +68,7 @@ pub(crate) struct Explore {
     #[arg(long)]
     solid: bool,
     /// Give up after this many ticks. Default: 1000 and 8 for each reachable
-    /// cell, for bmilrv 100.
+    /// cell, for bmilrv 12 times that.
     #[arg(long, value_name = "T")]
     max_ticks: Option<u32>,
     /// Folder for pictures, trace and summary. Default: out/ and the map's name.
@@ -169,6 +187,10 @@ impl Explore {
         scenario.range = self.range;
         scenario.sync = self.sync;
         scenario.loss = self.loss;
+        scenario.medium = self.medium;
+        scenario.byte_budget = self.byte_budget;
+        scenario.air.reach = self.radio_range;
+        scenario.air.corruption = self.corrupt;
         scenario.seed = self.seed;
         scenario.solid = self.solid;
         scenario.max_ticks = self.max_ticks.unwrap_or(scenario.max_ticks);
@@ -211,5 +233,16 @@ pub(super) fn parse_share(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (nothing) to 1 (everything), for example 0.6".into()),
+    }
+}
+
+fn parse_reach(text: &str) -> Result<Reach, String> {
+    match text {
+        "all" => Ok(Reach::Everywhere),
+        "sight" => Ok(Reach::LineOfSight),
+        _ => text
+            .parse()
+            .map(Reach::Cells)
+            .map_err(|_| "expected all, sight or a number of cells, for example 12".into()),
     }
 }

@@ -5,6 +5,7 @@ mod explore;
 mod figures;
 mod folder;
 mod generate;
+mod live;
 mod report;
 
 use std::error::Error;
@@ -14,6 +15,7 @@ pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
 pub(crate) use figures::Figures;
 pub(crate) use generate::Generate;
+pub(crate) use live::{Robot, World};
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;

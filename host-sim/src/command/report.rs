@@ -28,11 +28,19 @@ pub(super) fn print(summary: &Summary, out: &Path) {
         "  most work          {} in one tick",
         summary.max_work_per_tick
     );
+    println!(
+        "  maps agree         {}",
+        summary
+            .maps_differ_because
+            .map_or("yes".into(), |why| format!("no: {why}"))
+    );
     for (number, robot) in summary.robots.iter().enumerate() {
         println!(
-            "  robot {number:<3} {:>6} steps, {:>6} cells known, {}",
+            "  robot {number:<3} {:>6} steps, {:>6} cells known, {:>5} frames of {:>7} bytes sent, {}",
             robot.steps,
             robot.cells_known,
+            robot.frames_sent,
+            robot.bytes_sent,
             state(robot)
         );
     }

@@ -43,13 +43,17 @@ pub fn coverage_plot(trace: &Trace, to: impl io::Write) -> Result<(), DrawError>
     while replay.tick() {
         points.push((points.len() as u32, 100.0 * share(&replay)));
     }
+    let title = title(trace);
+    // The font is fixed-width, 0.6 of its size a character; a long title shrinks.
+    let room = (SIZE.0 - 80) * 10 / 6;
+    let size = (room / title.chars().count().max(1) as u32).clamp(9, 18);
     let end = trace.ticks().max(2) - 1;
     let mut canvas = Canvas::new(SIZE.0, SIZE.1);
     {
         let area = BitMapBackend::with_buffer(&mut canvas.pixels, SIZE).into_drawing_area();
         area.fill(&WHITE)?;
         let mut chart = ChartBuilder::on(&area)
-            .caption(title(trace), text(18))
+            .caption(title, text(size))
             .margin(20)
             .x_label_area_size(52)
             .y_label_area_size(72)

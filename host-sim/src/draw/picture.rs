@@ -12,7 +12,7 @@ use super::{Canvas, DrawError};
 use crate::trace::Trace;
 
 /// Sides of the drawn map in pixels, about.
-const SIDE: u32 = 960;
+const SIDE: u32 = 1200;
 /// Least width, so that the caption has room.
 const LEAST_WIDTH: u32 = 720;
 const MARGIN: i32 = 16;
@@ -27,11 +27,20 @@ type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 /// Those of `to`.
 pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
     let mut replay = Replay::new(trace);
-    while replay.tick() {}
+    let mut last_news = 0;
+    for tick in 0.. {
+        let before = replay.seen_cells();
+        if !replay.tick() {
+            break;
+        }
+        if replay.seen_cells() > before {
+            last_news = tick;
+        }
+    }
     let frame = Frame::of(trace);
     let keys = keys(trace, &replay, frame.width);
     let rows = keys.last().map_or(0, |key| key.row + 1);
-    let lines = caption(trace, &replay);
+    let lines = caption(trace, &replay, last_news);
     let footer = MARGIN + LINE * (lines.len() as i32 + rows) + MARGIN / 2;
     let mut canvas = Canvas::new(frame.width, frame.bottom() as u32 + footer as u32);
     {
@@ -134,25 +143,28 @@ impl Frame {
     }
 
     fn draw_ways(&self, area: &Area<'_>, trace: &Trace) -> Result<(), DrawError> {
-        let width = (self.scale as u32 / 6).clamp(1, 3);
-        let mut ways: Vec<Vec<Cell>> = trace
-            .scenario
-            .starts
-            .iter()
-            .map(|&start| vec![start])
-            .collect();
         for record in &trace.records {
-            let way = &mut ways[usize::from(record.robot)];
-            if way.last() != Some(&record.after()) {
-                way.push(record.after());
+            let robot = usize::from(record.robot);
+            let (from, to) = (
+                self.lane(robot, record.at),
+                self.lane(robot, record.after()),
+            );
+            if from != to {
+                let before = self.thickness() / 2;
+                let after = self.thickness() - before;
+                let bar = [
+                    (from.0.min(to.0) - before, from.1.min(to.1) - before),
+                    (from.0.max(to.0) + after, from.1.max(to.1) + after),
+                ];
+                area.draw(&Rectangle::new(bar, robot_color(robot).filled()))?;
             }
         }
-        for (robot, way) in ways.iter().enumerate() {
-            let points: Vec<_> = way.iter().map(|&cell| self.lane(robot, cell)).collect();
-            let style = robot_color(robot).stroke_width(width);
-            area.draw(&PathElement::new(points, style))?;
-        }
         Ok(())
+    }
+
+    /// Thickness of a way in pixels.
+    fn thickness(&self) -> i32 {
+        ((self.scale + 1) / 3).clamp(1, 3)
     }
 
     fn draw_robots(
@@ -217,12 +229,14 @@ pub(super) fn title(trace: &Trace) -> String {
     )
 }
 
-fn caption(trace: &Trace, replay: &Replay<'_>) -> [String; 2] {
+fn caption(trace: &Trace, replay: &Replay<'_>, last_news: u32) -> [String; 2] {
     let (seen, reachable) = (replay.seen_cells(), replay.reachable_cells());
     let ticks = trace.ticks();
     [
         title(trace),
-        format!("{seen} of {reachable} reachable cells seen in {ticks} ticks"),
+        format!(
+            "{seen} of {reachable} reachable cells seen, the last in tick {last_news} of {ticks}"
+        ),
     ]
 }
 
@@ -243,7 +257,7 @@ enum Sign {
 
 impl Key {
     fn draw(&self, area: &Area<'_>, y: i32) -> Result<(), DrawError> {
-        let (x, middle) = (self.x, y + LINE / 2 - 3);
+        let (x, middle) = (self.x, y + TEXT as i32 / 2);
         match self.sign {
             Sign::Ground(ground) => {
                 let square = [(x, middle - 6), (x + 14, middle + 7)];

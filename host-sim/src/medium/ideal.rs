@@ -1,20 +1,20 @@
 //! The medium of the papers: whole maps, at once, without a frame.
 
 use planner_core::{Map, RobotId, Status, TileSet};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::Medium;
+use super::air::Air;
 use crate::fleet::Robot;
 
 /// Every living robot hands its whole map and its status to every other; all
-/// speak at the same moment, and each receiver misses each sender with the
-/// probability `loss`.
+/// speak at the same moment, and the air decides who misses whom.
 ///
 /// Only tiles that the receiver may lack are joined, which gives the same maps
 /// as joining all of them.
 pub struct Ideal<const TW: usize, const TH: usize> {
-    loss: Loss,
+    air: Air,
+    /// Ticks between two exchanges; 0: never.
+    sync: u32,
     voices: Vec<Voice<TW, TH>>,
     /// Tiles of robot `s` that robot `r` may lack, at `r · robots + s`.
     pending: Vec<TileSet<TH>>,
@@ -32,10 +32,10 @@ struct Voice<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
-    /// A medium that loses the share `loss` (0 to 1) of all messages, by `seed`.
-    pub fn new(loss: f64, seed: u64) -> Self {
+    pub(super) fn new(air: Air, sync: u32) -> Self {
         Self {
-            loss: Loss::new(loss, seed),
+            air,
+            sync,
             voices: Vec::new(),
             pending: Vec::new(),
         }
@@ -60,16 +60,17 @@ impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
         }
     }
 
-    fn listen(&mut self, robots: &mut [Robot<TW, TH>]) {
+    fn listen(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
         let rows = self.pending.chunks_exact_mut(robots.len());
         for (robot, row) in robots.iter_mut().zip(rows) {
             if !robot.alive {
                 continue;
             }
             for (voice, pending) in self.voices.iter().zip(row) {
+                let to = (robot.id, robot.position);
                 if let Some(status) = voice.status
                     && voice.id != robot.id
-                    && !self.loss.strikes()
+                    && self.air.carries(tick, (voice.id, status.position), to)
                 {
                     robot.planner.join(&voice.map, pending);
                     robot.planner.hear(voice.id, status);
@@ -112,10 +113,12 @@ impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
 }
 
 impl<const TW: usize, const TH: usize> Medium<TW, TH> for Ideal<TW, TH> {
-    fn exchange(&mut self, robots: &mut [Robot<TW, TH>]) {
-        self.speak(robots);
-        self.listen(robots);
-        self.settle(robots);
+    fn exchange(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
+        if self.sync != 0 && tick.is_multiple_of(self.sync) {
+            self.speak(robots);
+            self.listen(tick, robots);
+            self.settle(robots);
+        }
     }
 }
 
@@ -130,25 +133,5 @@ impl<const TW: usize, const TH: usize> Voice<TW, TH> {
             map,
             heard: TileSet::new(),
         }
-    }
-}
-
-/// Seeded loss of messages.
-pub(super) struct Loss {
-    /// A message is lost if 32 random bits are below this.
-    below: u64,
-    bits: ChaCha8Rng,
-}
-
-impl Loss {
-    pub(super) fn new(share: f64, seed: u64) -> Self {
-        Self {
-            below: (share.clamp(0.0, 1.0) * 2f64.powi(32)) as u64,
-            bits: ChaCha8Rng::seed_from_u64(seed),
-        }
-    }
-
-    pub(super) fn strikes(&mut self) -> bool {
-        self.below > 0 && u64::from(self.bits.next_u32()) < self.below
     }
 }

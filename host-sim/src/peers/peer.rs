@@ -74,15 +74,21 @@ pub struct Peer<R, const TW: usize, const TH: usize> {
 }
 
 impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
-    /// Robot `id` at `start` on a grid of `extent`.
+    /// Robot `id` at `start` on a grid of `extent`, with this use of the radio.
     ///
     /// # Errors
     /// A grid that a map of this size does not hold.
-    pub fn new(rule: R, id: RobotId, extent: Extent, start: Cell) -> Result<Self, ExtentError> {
+    pub fn new(
+        rule: R,
+        id: RobotId,
+        extent: Extent,
+        start: Cell,
+        config: LinkConfig,
+    ) -> Result<Self, ExtentError> {
         let mut map = Box::new(Map::vacant());
         map.reset(extent)?;
         let mut link = Link::vacant();
-        link.reset(LinkConfig::new(), id, extent);
+        link.reset(config, id, extent);
         Ok(Self {
             rule,
             id,

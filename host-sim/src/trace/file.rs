@@ -8,13 +8,14 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{COLUMNS, NOWHERE, Record, Trace};
-use crate::fleet::{Closure, Death, Faults};
+use crate::fleet::{Arrival, Closure, Death, Faults, Restart, Sent};
+use crate::medium::{AirFaults, MediumKind};
 use crate::planners::PlannerKind;
 use crate::run::{Scenario, ScenarioError};
 use crate::world::{World, WorldError};
 
 const FORMAT: &str = "host-sim trace";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A trace that cannot be read.
 #[derive(Debug, Error)]
@@ -85,14 +86,21 @@ struct Header {
     records: usize,
     planner: PlannerKind,
     range: u8,
+    medium: MediumKind,
     sync: u32,
+    byte_budget: u16,
     loss: f64,
+    air: AirFaults,
     seed: u64,
     solid: bool,
     max_ticks: u32,
     starts: Vec<(i16, i16)>,
     /// (robot, tick)
     deaths: Vec<(u8, u32)>,
+    /// (robot, tick)
+    arrivals: Vec<(u8, u32)>,
+    /// (robot, tick)
+    restarts: Vec<(u8, u32)>,
     /// (x, y, from, until)
     closures: Vec<(i16, i16, u32, u32)>,
     world: WorldRows,
@@ -116,7 +124,7 @@ impl Trace {
             let goal = record.goal.unwrap_or(NOWHERE);
             writeln!(
                 to,
-                "{},{},{},{},{},{},{},{},{}",
+                "{},{},{},{},{},{},{},{},{},{},{}",
                 record.tick,
                 record.robot,
                 record.at.x,
@@ -125,7 +133,9 @@ impl Trace {
                 goal.x,
                 goal.y,
                 record.known,
-                record.work
+                record.work,
+                record.sent.frames,
+                record.sent.bytes
             )?;
         }
         Ok(())
@@ -192,8 +202,11 @@ impl Header {
             records: trace.records.len(),
             planner: scenario.planner,
             range: scenario.range,
+            medium: scenario.medium,
             sync: scenario.sync,
+            byte_budget: scenario.byte_budget,
             loss: scenario.loss,
+            air: scenario.air.clone(),
             seed: scenario.seed,
             solid: scenario.solid,
             max_ticks: scenario.max_ticks,
@@ -206,6 +219,16 @@ impl Header {
                 .deaths
                 .iter()
                 .map(|death| (death.robot.0, death.tick))
+                .collect(),
+            arrivals: faults
+                .arrivals
+                .iter()
+                .map(|arrival| (arrival.robot.0, arrival.tick))
+                .collect(),
+            restarts: faults
+                .restarts
+                .iter()
+                .map(|restart| (restart.robot.0, restart.tick))
                 .collect(),
             closures: faults.closures.iter().map(closure).collect(),
             world: WorldRows::of(&scenario.world),
@@ -223,6 +246,14 @@ impl Header {
             robot: RobotId(robot),
             tick,
         };
+        let arrival = |(robot, tick)| Arrival {
+            robot: RobotId(robot),
+            tick,
+        };
+        let restart = |(robot, tick)| Restart {
+            robot: RobotId(robot),
+            tick,
+        };
         let closure = |(x, y, from, until)| Closure {
             cell: Cell::new(x, y),
             from,
@@ -237,13 +268,18 @@ impl Header {
                 .collect(),
             planner: self.planner,
             range: self.range,
+            medium: self.medium,
             sync: self.sync,
+            byte_budget: self.byte_budget,
             loss: self.loss,
+            air: self.air,
             seed: self.seed,
             solid: self.solid,
             max_ticks: self.max_ticks,
             faults: Faults {
                 deaths: self.deaths.into_iter().map(death).collect(),
+                arrivals: self.arrivals.into_iter().map(arrival).collect(),
+                restarts: self.restarts.into_iter().map(restart).collect(),
                 closures: self.closures.into_iter().map(closure).collect(),
             },
         };
@@ -295,6 +331,10 @@ fn parse_record(line: &str) -> Option<Record> {
     let goal = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
     let known = next()?.parse().ok()?;
     let work = next()?.parse().ok()?;
+    let sent = Sent {
+        frames: next()?.parse().ok()?,
+        bytes: next()?.parse().ok()?,
+    };
     next().is_none().then_some(Record {
         tick,
         robot,
@@ -303,5 +343,6 @@ fn parse_record(line: &str) -> Option<Record> {
         goal: (goal != NOWHERE).then_some(goal),
         known,
         work,
+        sent,
     })
 }

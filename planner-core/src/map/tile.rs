@@ -195,6 +195,30 @@ impl<const TH: usize> TileSet<TH> {
         Some(tile)
     }
 
+    /// Takes out the first tile behind `tile` in the order of
+    /// [`iter`](Self::iter); where there is none, the first of all.
+    pub fn pop_after(&mut self, tile: TileIndex) -> Option<TileIndex> {
+        let beyond = |bit: u8| (u64::MAX << (bit & 63)) & !(1 << (bit & 63));
+        let rest_of_row = self.row(tile.y) & beyond(tile.x);
+        let next = if rest_of_row != 0 {
+            TileIndex {
+                x: rest_of_row.trailing_zeros() as u8,
+                y: tile.y,
+            }
+        } else {
+            let y = (self.occupied & beyond(tile.y)).trailing_zeros() as u8;
+            match self.row(y) {
+                0 => return self.pop_first(),
+                row => TileIndex {
+                    x: row.trailing_zeros() as u8,
+                    y,
+                },
+            }
+        };
+        self.remove(next);
+        Some(next)
+    }
+
     /// Whether the tile is in the set.
     pub fn contains(&self, tile: TileIndex) -> bool {
         self.row(tile.y) >> (tile.x & 63) & 1 == 1

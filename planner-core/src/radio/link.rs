@@ -160,12 +160,13 @@ impl<const TH: usize> Link<TH> {
         }
     }
 
-    /// Starts anew, with a map of `extent` cells.
+    /// Starts anew, with a map of `extent` cells and the first tick's budget.
     pub fn reset(&mut self, config: LinkConfig, id: RobotId, extent: Extent) {
         *self = Self::vacant();
         self.config = config;
         self.grid = GridId::of(extent, config.origin_mm, config.cell_mm);
         self.id = id;
+        self.credit = config.bytes_per_tick;
     }
 
     /// Another tick: the budget of bytes grows. What is not used is not saved up
@@ -285,3 +286,6 @@ impl<const TH: usize> Link<TH> {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

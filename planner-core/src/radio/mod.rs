@@ -11,3 +11,6 @@ mod outbox;
 
 pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 pub use link::{GridId, Heard, Key, Link, LinkConfig};
+
+#[cfg(test)]
+mod tests;

@@ -2,14 +2,27 @@
 
 use crate::map::{TileIndex, TileSet};
 
+/// Every so many tiles one is sent in turn, whatever else waits.
+const TURN: u8 = 8;
+/// Unknown tiles that the turn passes over at a time.
+const STRIDE: u8 = 8;
+
 /// Tiles to send: what was newly seen first, then the same once more, then every
 /// tile in turn, for those who missed it or came late.
+///
+/// Nothing starves: new tiles are taken round and round, so one that keeps
+/// changing waits for the others; and every [`TURN`]th tile is the turn's, so
+/// every known tile is sent again and again as long as the robot may send.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Outbox<const TH: usize> {
     fresh: TileSet<TH>,
     again: TileSet<TH>,
+    /// The last new tile that was sent.
+    last: TileIndex,
     /// Where the turn through all tiles stands.
     turn: TileIndex,
+    /// Tiles sent since the last one in turn.
+    since_turn: u8,
 }
 
 impl<const TH: usize> Outbox<TH> {
@@ -17,7 +30,9 @@ impl<const TH: usize> Outbox<TH> {
         Self {
             fresh: TileSet::new(),
             again: TileSet::new(),
+            last: TileIndex { x: 0, y: 0 },
             turn: TileIndex { x: 0, y: 0 },
+            since_turn: 0,
         }
     }
 
@@ -26,33 +41,41 @@ impl<const TH: usize> Outbox<TH> {
         self.fresh.extend(tiles);
     }
 
-    /// The tile to send next; `None` where the turn comes upon one of which
-    /// nothing is known. Work: a few words.
+    /// The tile to send next; `None` where the turn meets [`STRIDE`] tiles on end
+    /// of which nothing is known. Work: a few words, and these tiles.
     pub(crate) fn next(
         &mut self,
         tile_extent: (u8, u8),
         is_worth_sending: impl Fn(TileIndex) -> bool,
     ) -> Option<TileIndex> {
-        if let Some(tile) = self.fresh.pop_first() {
-            self.again.insert(tile);
-            return Some(tile);
+        self.since_turn += 1;
+        if self.since_turn < TURN {
+            if let Some(tile) = self.fresh.pop_after(self.last) {
+                self.again.insert(tile);
+                self.last = tile;
+                return Some(tile);
+            }
+            if let Some(tile) = self.again.pop_first() {
+                return Some(tile);
+            }
         }
-        if let Some(tile) = self.again.pop_first() {
-            return Some(tile);
-        }
+        self.since_turn = 0;
+        (0..STRIDE)
+            .map(|_| self.take_turn(tile_extent))
+            .find(|&tile| is_worth_sending(tile))
+    }
+
+    fn take_turn(&mut self, (columns, rows): (u8, u8)) -> TileIndex {
         let tile = self.turn;
         self.turn.x += 1;
-        if self.turn.x >= tile_extent.0 {
-            self.turn = TileIndex {
-                x: 0,
-                y: if tile.y + 1 < tile_extent.1 {
-                    tile.y + 1
-                } else {
-                    0
-                },
-            };
+        if self.turn.x >= columns {
+            self.turn.x = 0;
+            self.turn.y += 1;
+            if self.turn.y >= rows {
+                self.turn.y = 0;
+            }
         }
-        is_worth_sending(tile).then_some(tile)
+        tile
     }
 
     /// Everything that waits to be sent for the first time, taken out.
@@ -60,3 +83,6 @@ impl<const TH: usize> Outbox<TH> {
         core::mem::take(&mut self.fresh)
     }
 }
+
+#[cfg(test)]
+mod tests;

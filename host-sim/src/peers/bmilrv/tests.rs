@@ -1,12 +1,13 @@
 use std::sync::Arc;
 
+use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Direction, RobotId};
 use proptest::prelude::*;
 
 use super::board::Mark;
 use super::{Bmilrv, Marks};
 use crate::fleet::{Death, Faults, Fleet, Rules};
-use crate::medium::Ideal;
+use crate::medium::{AirFaults, MediumKind};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate, paper};
 
@@ -24,17 +25,18 @@ impl Watched {
         let world = Arc::new(world);
         let starts = world.place(robots.into(), start, false).unwrap();
         let marks = Marks::new(world.extent(), starts[0]);
-        let planners = starts.iter().zip(0..).map(|(&start, id)| {
-            let robot = Bmilrv::new(marks.clone(), RobotId(id), world.extent(), start).unwrap();
-            (Box::new(robot) as _, start)
+        let (board, extent) = (marks.clone(), world.extent());
+        let build = Box::new(move |id, start| {
+            let robot = Bmilrv::new(board.clone(), id, extent, start, LinkConfig::new());
+            Box::new(robot.unwrap()) as _
         });
         let rules = Rules {
-            sync: 1,
             solid: false,
             faults,
         };
         let sensor = Arc::new(Sensor::new(world.clone(), range));
-        let fleet = Fleet::new(sensor, Box::new(Ideal::new(0.0, 0)), rules, planners);
+        let medium = MediumKind::Ideal.build(1, 0.0, AirFaults::default(), 0, world.clone());
+        let fleet = Fleet::new(sensor, medium, rules, build, &starts);
         Self {
             marks,
             fleet,

@@ -1,0 +1,137 @@
+//! What happens to messages on their way: the one fault model of all media.
+
+use std::sync::Arc;
+
+use planner_core::{Cell, RobotId, sight};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use crate::world::World;
+
+/// What goes wrong in the air besides plain loss. None of it by default.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct AirFaults {
+    /// Who can hear whom.
+    pub reach: Reach,
+    /// Times when the fleet is cut in two.
+    pub partitions: Vec<Partition>,
+    /// Share of received frames that come twice, 0 to 1. Only frames.
+    pub duplication: f64,
+    /// Each copy of a frame comes this many ticks late at most; what comes late is
+    /// overtaken by what does not. Only frames.
+    pub delay: u32,
+    /// Share of received frames with wrong bits or cut short, 0 to 1. Only frames.
+    pub corruption: f64,
+}
+
+/// Who can hear whom.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reach {
+    /// Everybody, everybody.
+    #[default]
+    Everywhere,
+    /// Robots that are at most this many cells apart, as the crow flies.
+    Cells(u16),
+    /// Robots with no obstacle between them.
+    LineOfSight,
+}
+
+/// In the ticks `from..until` the robots below `border` and the others do not
+/// hear each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Partition {
+    /// First tick.
+    pub from: u32,
+    /// First tick in which they hear each other again.
+    pub until: u32,
+    /// Lowest id of the second part.
+    pub border: u8,
+}
+
+/// The air of one run: the same calls in the same order meet the same faults.
+pub(super) struct Air {
+    faults: AirFaults,
+    /// Share of messages lost, for each pair of robots by itself.
+    loss: f64,
+    world: Arc<World>,
+    chance: ChaCha8Rng,
+}
+
+impl Air {
+    pub(super) fn new(faults: AirFaults, loss: f64, seed: u64, world: Arc<World>) -> Self {
+        Self {
+            faults,
+            loss,
+            world,
+            chance: ChaCha8Rng::seed_from_u64(seed),
+        }
+    }
+
+    /// Whether what one robot says in `tick` arrives at another.
+    pub(super) fn carries(
+        &mut self,
+        tick: u32,
+        from: (RobotId, Cell),
+        to: (RobotId, Cell),
+    ) -> bool {
+        let is_cut = |partition: &Partition| {
+            (partition.from..partition.until).contains(&tick)
+                && (from.0.0 < partition.border) != (to.0.0 < partition.border)
+        };
+        !self.faults.partitions.iter().any(is_cut)
+            && self.reaches(from.1, to.1)
+            && !self.strikes(self.loss)
+    }
+
+    /// The copies of a frame that a robot receives, and how many ticks late.
+    pub(super) fn copies(&mut self, frame: &[u8]) -> Vec<(u32, Vec<u8>)> {
+        let copies = 1 + usize::from(self.strikes(self.faults.duplication));
+        (0..copies)
+            .map(|_| {
+                let late = match self.faults.delay {
+                    0 => 0,
+                    most => self.below(most.saturating_add(1)),
+                };
+                let mut bytes = frame.to_vec();
+                if self.strikes(self.faults.corruption) {
+                    self.corrupt(&mut bytes);
+                }
+                (late, bytes)
+            })
+            .collect()
+    }
+
+    fn reaches(&self, from: Cell, to: Cell) -> bool {
+        match self.faults.reach {
+            Reach::Everywhere => true,
+            Reach::Cells(cells) => from.distance_squared(to) <= u32::from(cells).pow(2),
+            Reach::LineOfSight => sight::line_of_sight(from, to, |cell| !self.world.is_free(cell)),
+        }
+    }
+
+    /// One to eight wrong bits, or an end that is missing.
+    fn corrupt(&mut self, bytes: &mut Vec<u8>) {
+        let length = bytes.len() as u32;
+        if self.below(8) == 0 {
+            bytes.truncate(self.below(length) as usize);
+            return;
+        }
+        for _ in 0..=self.below(8) {
+            let bit = self.below(8 * length);
+            bytes[bit as usize / 8] ^= 1 << (bit % 8);
+        }
+    }
+
+    /// True for the given share of calls. Draws nothing for a share of 0.
+    fn strikes(&mut self, share: f64) -> bool {
+        let below = (share.clamp(0.0, 1.0) * 2f64.powi(32)) as u64;
+        below > 0 && u64::from(self.chance.next_u32()) < below
+    }
+
+    fn below(&mut self, n: u32) -> u32 {
+        ((u64::from(self.chance.next_u32()) * u64::from(n)) >> 32) as u32
+    }
+}

@@ -1,0 +1,112 @@
+use std::sync::Arc;
+
+use planner_core::{Cell, Direction, RobotId};
+
+use super::*;
+use crate::fleet::{Arrival, Closure, Death, Faults, Restart};
+use crate::medium::{AirFaults, MediumKind, Reach};
+use crate::planners::PlannerKind;
+use crate::run::{Options, run};
+use crate::world::{Family, Starts, generate};
+
+fn trace() -> Trace {
+    let world = Arc::new(generate(Family::Rooms, 40, 30, 7).unwrap());
+    let starts = world.place(3, &Starts::Center, false).unwrap();
+    let mut scenario = Scenario::new(world, starts, PlannerKind::Closest);
+    scenario.loss = 0.3;
+    scenario.medium = MediumKind::Radio;
+    scenario.air = AirFaults {
+        reach: Reach::Cells(20),
+        delay: 3,
+        corruption: 0.1,
+        ..AirFaults::default()
+    };
+    scenario.seed = u64::MAX;
+    scenario.faults = Faults {
+        deaths: vec![Death {
+            robot: RobotId(1),
+            tick: 40,
+        }],
+        closures: vec![Closure {
+            cell: Cell::new(9, 9),
+            from: 3,
+            until: 50,
+        }],
+        arrivals: vec![Arrival {
+            robot: RobotId(2),
+            tick: 7,
+        }],
+        restarts: vec![Restart {
+            robot: RobotId(1),
+            tick: 90,
+        }],
+    };
+    let options = Options {
+        trace: true,
+        ..Options::default()
+    };
+    run(&scenario, options).unwrap().1.unwrap()
+}
+
+fn text(trace: &Trace) -> String {
+    let mut file = Vec::new();
+    trace.write(&mut file).unwrap();
+    String::from_utf8(file).unwrap()
+}
+
+#[test]
+fn a_trace_survives_its_file_and_runs_again() {
+    let trace = trace();
+    let read = Trace::read(text(&trace).as_bytes()).unwrap();
+    assert_eq!(read.records, trace.records);
+    assert_eq!(text(&read), text(&trace));
+    let options = Options {
+        trace: true,
+        ..Options::default()
+    };
+    let (_, again) = run(&read.scenario, options).unwrap();
+    assert_eq!(again.unwrap().digest(), trace.digest());
+}
+
+#[test]
+fn a_damaged_file_is_an_error_that_says_where() {
+    let text = text(&trace());
+    let error = |text: &str| Trace::read(text.as_bytes()).unwrap_err().to_string();
+    assert!(error("").contains("line 1"));
+    assert!(error("tick,robot").contains("line 1"));
+    let cut = &text[..text[..text.len() - 1].rfind('\n').unwrap()];
+    assert!(error(cut).contains("cut off"), "{}", error(cut));
+    let broken = text.replacen("\n0,1,", "\n0,one,", 1);
+    assert!(error(&broken).starts_with("line 4"), "{}", error(&broken));
+    let edited = text.replacen("\n0,1,", "\n0,2,", 1);
+    assert!(error(&edited).contains("digest"), "{}", error(&edited));
+    let newer = text.replacen("\"version\":2", "\"version\":3", 1);
+    assert!(error(&newer).contains("version 3"), "{}", error(&newer));
+    let world = text.replacen("[\"#", "[\"##", 1);
+    assert!(error(&world).contains("row 2"), "{}", error(&world));
+}
+
+#[test]
+fn the_bytes_of_a_record_are_as_documented() {
+    let record = Record {
+        tick: 0x0102_0304,
+        robot: 5,
+        at: Cell::new(6, -2),
+        action: Direction::North as u8,
+        goal: None,
+        known: 7,
+        work: 256,
+        sent: Sent {
+            frames: 1,
+            bytes: 55,
+        },
+    };
+    assert_eq!(
+        record.bytes(),
+        [
+            4, 3, 2, 1, 5, 6, 0, 254, 255, 3, 255, 255, 255, 255, 7, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0,
+            0, 55, 0, 0, 0
+        ]
+    );
+    assert_eq!(record.after(), Cell::new(6, -3));
+}

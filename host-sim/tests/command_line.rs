@@ -1,0 +1,227 @@
+//! The command as a stranger calls it: files, exit statuses, messages.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const ROOMS: &str = "\
+############
+#1....#....#
+#..........#
+#.....#....#
+############
+";
+
+/// A folder with a small map in it.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rooms.txt"), ROOMS).unwrap();
+    folder
+}
+
+fn host_sim(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("host-sim").unwrap();
+    command.current_dir(folder).args(arguments);
+    command
+}
+
+/// Exit status 2, a message with all of `words`, and no output folder.
+fn assert_bad_input(folder: &Path, arguments: &[&str], words: &[&str]) {
+    let assert = host_sim(folder, arguments).assert().code(2);
+    let output = assert.get_output();
+    let message = String::from_utf8_lossy(&output.stderr);
+    for word in words {
+        assert!(message.contains(word), "{word:?} is not in: {message}");
+    }
+    assert!(output.stdout.is_empty());
+    assert!(!folder.join("out").exists());
+}
+
+#[test]
+fn a_complete_run_leaves_its_files_and_exits_with_0() {
+    let folder = folder();
+    let assert = host_sim(folder.path(), &["explore", "rooms.txt"])
+        .assert()
+        .success();
+    let text = String::from_utf8_lossy(&assert.get_output().stdout).into_owned();
+    assert!(text.contains("out/rooms"), "{text}");
+    let mut files: Vec<_> = fs::read_dir(folder.path().join("out/rooms"))
+        .unwrap()
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    files.sort();
+    let expected = [
+        "coverage.csv",
+        "coverage.png",
+        "explored.gif",
+        "explored.png",
+        "summary.json",
+        "trace.csv",
+    ];
+    assert_eq!(files, expected);
+}
+
+#[test]
+fn json_is_one_object_with_the_documented_fields() {
+    let folder = folder();
+    let arguments = [
+        "explore",
+        "rooms.txt",
+        "--json",
+        "--robots",
+        "2",
+        "--seed",
+        "7",
+    ];
+    let run = || {
+        let assert = host_sim(folder.path(), &arguments).assert().success();
+        assert!(assert.get_output().stderr.is_empty());
+        serde_json::from_slice::<Value>(&assert.get_output().stdout).unwrap()
+    };
+    let summary = run();
+    assert_eq!(summary["complete"], true);
+    for field in [
+        "ticks_to_seen",
+        "ticks_to_stopped",
+        "reachable_cells",
+        "seen_cells",
+        "max_work_per_tick",
+    ] {
+        assert!(summary[field].is_u64(), "{field}: {}", summary[field]);
+    }
+    assert_eq!(summary["reachable_cells"], 28);
+    assert_eq!(summary["seen_cells"], 28);
+    assert_eq!(summary["trace_digest"].as_str().unwrap().len(), 16);
+    let robots = summary["robots"].as_array().unwrap();
+    assert_eq!(robots.len(), 2);
+    for robot in robots {
+        assert!(robot["steps"].is_u64());
+        assert!(robot["cells_known"].is_u64());
+        assert_eq!(robot["stop"], "complete");
+        assert_eq!(robot["start"], serde_json::json!([1, 1]));
+    }
+    assert_eq!(run(), summary, "the same command gives the same summary");
+}
+
+#[test]
+fn an_incomplete_run_says_what_was_left_and_exits_with_1() {
+    let folder = folder();
+    let arguments = ["explore", "rooms.txt", "--range", "1", "--max-ticks", "3"];
+    let assert = host_sim(folder.path(), &arguments).assert().code(1);
+    let message = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    assert!(message.contains("not complete"), "{message}");
+    assert!(
+        message.contains("of 28 reachable cells unseen after 3 ticks"),
+        "{message}"
+    );
+}
+
+#[test]
+fn every_planner_has_a_name() {
+    let folder = folder();
+    for planner in ["explorer", "closest", "greedy", "minpos", "minpos-strong"] {
+        host_sim(
+            folder.path(),
+            &["explore", "rooms.txt", "--planner", planner],
+        )
+        .assert()
+        .success();
+    }
+}
+
+#[test]
+fn bad_maps_are_named() {
+    let folder = folder();
+    let path = folder.path();
+    assert_bad_input(
+        path,
+        &["explore", "none.png"],
+        &["none.png", "no such file"],
+    );
+    fs::write(path.join("map.bmp"), "BM").unwrap();
+    assert_bad_input(path, &["explore", "map.bmp"], &["map.bmp", "bmp", ".png"]);
+    fs::write(path.join("full.txt"), "###\n###\n").unwrap();
+    assert_bad_input(
+        path,
+        &["explore", "full.txt"],
+        &["full.txt", "no free cell"],
+    );
+    fs::write(path.join("large.txt"), "#".repeat(511) + &".".repeat(500)).unwrap();
+    assert_bad_input(path, &["explore", "large.txt"], &["large.txt", "512×512"]);
+    fs::write(
+        path.join("site.yaml"),
+        "image: site.png\norigin: [0, 0, 0]\n",
+    )
+    .unwrap();
+    assert_bad_input(
+        path,
+        &["explore", "site.yaml"],
+        &["site.yaml", "resolution"],
+    );
+
+    host_sim(path, &["generate", "cave", "-o", "cave.png"])
+        .assert()
+        .success();
+    let whole = fs::read(path.join("cave.png")).unwrap();
+    fs::write(path.join("cut.png"), &whole[..whole.len() / 2]).unwrap();
+    assert_bad_input(path, &["explore", "cut.png"], &["cut.png", "complete"]);
+}
+
+#[test]
+fn bad_options_are_named() {
+    let folder = folder();
+    let bad = |arguments: &[&str], words: &[&str]| {
+        let arguments = [&["explore", "rooms.txt"], arguments].concat();
+        assert_bad_input(folder.path(), &arguments, words);
+    };
+    bad(&["--start", "0,0"], &["0,0", "obstacle", "nearest free"]);
+    bad(&["--start", "40,2"], &["40,2", "outside"]);
+    bad(&["--start", "north"], &["--start", "X,Y"]);
+    bad(
+        &["--start", "2,2", "--start", "center"],
+        &["--start", "alone"],
+    );
+    bad(&["--solid", "--robots", "29"], &["29", "28", "--solid"]);
+    bad(&["--robots", "0"], &["--robots"]);
+    bad(&["--range", "16"], &["--range", "1..=15"]);
+    bad(&["--loss", "60"], &["--loss", "0 (nothing) to 1"]);
+    bad(&["--corrupt", "2"], &["--corrupt", "0 (nothing) to 1"]);
+    bad(&["--radio-range", "far"], &["--radio-range", "all, sight"]);
+    bad(&["--medium", "wire"], &["--medium", "ideal", "radio"]);
+    bad(&["--planner", "best"], &["--planner", "explorer"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_to_stops_the_run_before_it_starts() {
+    let folder = folder();
+    fs::write(folder.path().join("taken"), "a file").unwrap();
+    let arguments = ["explore", "rooms.txt", "--out", "taken"];
+    assert_bad_input(folder.path(), &arguments, &["taken", "--out"]);
+    assert_eq!(
+        fs::read_to_string(folder.path().join("taken")).unwrap(),
+        "a file"
+    );
+}
+
+#[test]
+fn generate_writes_what_explore_reads() {
+    let folder = folder();
+    let arguments = ["generate", "cave", "--size", "big", "-o", "cave.png"];
+    assert_bad_input(folder.path(), &arguments, &["--size", "WIDTHxHEIGHT"]);
+    for (family, file) in [
+        ("perfect-maze", "maze.txt"),
+        ("open", "open.pgm"),
+        ("rooms", "r.map"),
+    ] {
+        let arguments = [
+            "generate", family, "--size", "25x21", "--seed", "4", "-o", file,
+        ];
+        host_sim(folder.path(), &arguments).assert().success();
+        host_sim(folder.path(), &["explore", file, "--robots", "1"])
+            .assert()
+            .success();
+    }
+}

@@ -1,0 +1,214 @@
+use super::*;
+use crate::cell::Cell;
+use crate::map::{Tile, TileIndex};
+use crate::planner::Activity;
+
+const EXTENT: Extent = Extent::new(29, 19);
+const STATUS: Status = Status {
+    position: Cell::new(3, 4),
+    goal: None,
+    activity: Activity::Exploring,
+};
+
+type Small = Link<4>;
+
+fn link(id: u8, config: LinkConfig) -> Small {
+    let mut link = Small::vacant();
+    link.reset(config, RobotId(id), EXTENT);
+    link
+}
+
+fn map() -> Map<4, 4> {
+    Map::new(EXTENT).unwrap()
+}
+
+/// A map of which something is known.
+fn explored() -> Map<4, 4> {
+    let mut map = map();
+    for at in [TileIndex::new(0, 0), TileIndex::new(3, 2)] {
+        let known = 0x0000_3c3c_3c3c_0f0f;
+        map.join_tile(
+            at,
+            Tile {
+                known,
+                ..Tile::UNKNOWN
+            },
+        );
+    }
+    map
+}
+
+/// The next frame of a robot whose budget grows until it may send one.
+fn next_frame(link: &mut Small, map: &Map<4, 4>) -> std::vec::Vec<u8> {
+    let mut buffer = [0; MAX_LEN];
+    loop {
+        if let Some(length) = link.transmit(map, STATUS, &mut buffer) {
+            return buffer[..length].to_vec();
+        }
+        link.tick();
+    }
+}
+
+#[test]
+fn the_grid_id_hashes_size_origin_and_resolution() {
+    let id = GridId::of(Extent::new(64, 48), (0, -1500), 100);
+    assert_eq!(id, GridId(0x93bb));
+    assert_ne!(id, GridId::of(Extent::new(48, 64), (0, -1500), 100));
+    assert_ne!(id, GridId::of(Extent::new(64, 48), (-1500, 0), 100));
+    assert_ne!(id, GridId::of(Extent::new(64, 48), (0, -1500), 50));
+}
+
+#[test]
+fn a_frame_brings_tiles_and_status_once() {
+    let (mut sender, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
+    let mut heard_by = map();
+    let mut told = explored();
+    sender.announce(&mut told);
+    let frame = next_frame(&mut sender, &told);
+    let heard = receiver.receive(&frame, &mut heard_by).unwrap();
+    assert_eq!(heard.from, RobotId(1));
+    assert_eq!(heard.status, Some(STATUS));
+    assert_eq!(heard.learnt.cells, told.known_cells());
+    // Late, repeated or replayed: tiles still join, the status is old.
+    let again = receiver.receive(&frame, &mut heard_by).unwrap();
+    assert_eq!(again.status, None);
+    assert!(!again.learnt.anything());
+}
+
+#[test]
+fn an_error_changes_nothing() {
+    let mut sender = link(1, LinkConfig::new());
+    let mut told = explored();
+    sender.announce(&mut told);
+    let frame = next_frame(&mut sender, &told);
+    let elsewhere = LinkConfig {
+        origin_mm: (1, 0),
+        ..LinkConfig::new()
+    };
+    for (mut receiver, error) in [
+        (link(1, LinkConfig::new()), FrameError::Own),
+        (link(2, elsewhere), FrameError::OtherGrid(sender.grid)),
+    ] {
+        let (before, mut heard_by) = (receiver.clone(), map());
+        assert_eq!(receiver.receive(&frame, &mut heard_by), Err(error));
+        assert_eq!(receiver, before);
+        assert!(heard_by == map());
+    }
+}
+
+#[test]
+fn sequence_numbers_wrap_around() {
+    let (mut sender, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
+    sender.sequence = u16::MAX - 1;
+    let mut heard_by = map();
+    let frames: std::vec::Vec<_> = (0..4).map(|_| next_frame(&mut sender, &map())).collect();
+    for frame in &frames {
+        let heard = receiver.receive(frame, &mut heard_by).unwrap();
+        assert_eq!(heard.status, Some(STATUS));
+    }
+    for frame in &frames {
+        let heard = receiver.receive(frame, &mut heard_by).unwrap();
+        assert_eq!(heard.status, None);
+    }
+}
+
+#[test]
+fn a_sender_that_starts_anew_is_believed_after_a_silence_of_its_old_numbers() {
+    let (mut old, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
+    old.sequence = 1000;
+    receiver
+        .receive(&next_frame(&mut old, &map()), &mut map())
+        .unwrap();
+    let mut new = link(1, LinkConfig::new());
+    let is_believed = |receiver: &mut Small, new: &mut Small| {
+        let frame = next_frame(new, &map());
+        receiver
+            .receive(&frame, &mut map())
+            .unwrap()
+            .status
+            .is_some()
+    };
+    assert!(!is_believed(&mut receiver, &mut new));
+    for _ in 0..=SILENCE {
+        receiver.tick();
+    }
+    assert!(is_believed(&mut receiver, &mut new));
+    assert!(is_believed(&mut receiver, &mut new));
+}
+
+#[test]
+fn of_more_senders_than_are_remembered_the_oldest_is_forgotten() {
+    let mut receiver = link(255, LinkConfig::new());
+    for id in 0..=SENDERS as u8 {
+        let frame = next_frame(&mut link(id, LinkConfig::new()), &map());
+        receiver.receive(&frame, &mut map()).unwrap();
+        receiver.tick();
+    }
+    let senders: std::vec::Vec<_> = receiver.latest.iter().map(|of| of.sender.0).collect();
+    assert_eq!(senders.len(), SENDERS);
+    assert!(!senders.contains(&0) && senders.contains(&(SENDERS as u8)));
+}
+
+#[test]
+fn the_budget_is_kept_on_average() {
+    for bytes_per_tick in [0, 1, 7, 16, 54, 55, 56, 110, 1000] {
+        let config = LinkConfig {
+            bytes_per_tick,
+            ..LinkConfig::new()
+        };
+        let mut sender = link(1, config);
+        let mut told = explored();
+        let mut sent = 0;
+        for tick in 1..=200u32 {
+            sender.announce(&mut told);
+            let mut buffer = [0; MAX_LEN];
+            while let Some(length) = sender.transmit(&told, STATUS, &mut buffer) {
+                sent += length as u32;
+            }
+            assert!(
+                sent <= tick * u32::from(bytes_per_tick),
+                "{bytes_per_tick} in {tick}"
+            );
+            sender.tick();
+        }
+        assert_eq!(sent == 0, bytes_per_tick == 0, "{bytes_per_tick}");
+    }
+}
+
+#[test]
+fn a_silent_robot_saves_up_one_frame_only() {
+    let config = LinkConfig {
+        bytes_per_tick: 10,
+        ..LinkConfig::new()
+    };
+    let mut sender = link(1, config);
+    for _ in 0..1000 {
+        sender.tick();
+    }
+    let mut buffer = [0; MAX_LEN];
+    assert!(sender.transmit(&explored(), STATUS, &mut buffer).is_some());
+    assert!(sender.transmit(&explored(), STATUS, &mut buffer).is_none());
+}
+
+#[cfg(feature = "keyed")]
+#[test]
+fn a_replayed_signed_frame_says_nothing_new() {
+    let config = LinkConfig {
+        key: Some(Key([3; 16])),
+        ..LinkConfig::new()
+    };
+    let (mut sender, mut receiver) = (link(1, config), link(2, config));
+    let frame = next_frame(&mut sender, &explored());
+    let mut heard_by = map();
+    assert!(
+        receiver
+            .receive(&frame, &mut heard_by)
+            .unwrap()
+            .status
+            .is_some()
+    );
+    let replayed = receiver.receive(&frame, &mut heard_by).unwrap();
+    assert_eq!(replayed.status, None);
+    let stranger = next_frame(&mut link(1, LinkConfig::new()), &explored());
+    assert!(receiver.receive(&stranger, &mut heard_by).is_err());
+}

@@ -31,7 +31,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 }
 
 /// Reports on the host's standard error and ends with a failure.
-fn fail(what: core::fmt::Arguments<'_>) -> ! {
+pub fn fail(what: core::fmt::Arguments<'_>) -> ! {
     if let Ok(mut out) = hio::hstderr() {
         // Without a host that listens, the status is all that is left to say.
         let _ = writeln!(out, "error: {what}");
@@ -50,7 +50,8 @@ extern "C" fn HardFault() -> ! {
         "mrs r0, msp",
         "ldr r1, =_stack_start",
         "msr msp, r1",
-        "b {report}",
+        "ldr r1, ={report}", // farther than a Cortex-M0 can branch
+        "bx r1",
         report = sym report_fault,
     )
 }

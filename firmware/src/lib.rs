@@ -1,22 +1,30 @@
-//! What every image for the chip shares: the world it explores, the measure of
-//! its stack, and how it ends.
+//! What every image for the chip shares: the world it explores, the measures of
+//! its time and memory, and how it ends.
 //!
 //! On the host this crate is empty; see `main.rs` for the image itself.
 #![cfg_attr(target_os = "none", no_std)]
 
 #[cfg(target_os = "none")]
+mod board;
+#[cfg(target_os = "none")]
 mod end;
 #[cfg(target_os = "none")]
 mod explore;
 #[cfg(target_os = "none")]
+pub mod memory;
+#[cfg(target_os = "none")]
 pub mod stack;
+#[cfg(target_os = "none")]
+mod stopwatch;
 #[cfg(target_os = "none")]
 mod world;
 
 #[cfg(target_os = "none")]
 pub use {
-    end::{Ending, end},
+    board::{CLOCK_HZ, COLUMNS, ROWS},
+    end::{Ending, end, fail},
     explore::{Exploration, explore},
+    stopwatch::Stopwatch,
     world::World,
 };
 

@@ -2,7 +2,13 @@
 //!
 //! cortex-m-rt paints the stack before `main`; what has lost its paint was used.
 
+use core::sync::atomic::{AtomicUsize, Ordering};
+
+use cortex_m::register::msp;
 use cortex_m_rt::STACK_PAINT_VALUE;
+
+/// The most that was in use before the paint was renewed.
+static PEAK: AtomicUsize = AtomicUsize::new(0);
 
 unsafe extern "C" {
     // Defined in memory-layout.x; only their addresses mean anything.
@@ -28,6 +34,30 @@ pub fn size() -> usize {
 ///
 /// Work: reads the unused part once.
 pub fn peak() -> usize {
+    PEAK.load(Ordering::Relaxed).max(since_painted())
+}
+
+/// Makes a call, and says how many bytes of stack it took.
+///
+/// Work: reads and writes the unused part of the stack.
+#[inline(never)]
+pub fn depth<T>(call: impl FnOnce() -> T) -> (T, usize) {
+    PEAK.store(peak(), Ordering::Relaxed);
+    let (bottom, top) = bounds();
+    let here = msp::read() as usize;
+    for at in (bottom..here).step_by(size_of::<u32>()) {
+        // SAFETY: below the stack pointer nothing is kept. An interrupt that uses
+        // it is over before the next word is written.
+        unsafe {
+            core::ptr::with_exposed_provenance_mut::<u32>(at).write_volatile(STACK_PAINT_VALUE);
+        }
+    }
+    let value = call();
+    (value, since_painted() - (top - here))
+}
+
+/// The most that was in use since the stack was painted, in bytes.
+fn since_painted() -> usize {
     let (bottom, top) = bounds();
     let painted = (bottom..top).step_by(size_of::<u32>()).take_while(|&at| {
         // SAFETY: the linker reserves `bottom..top` as readable memory, aligned

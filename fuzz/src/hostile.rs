@@ -35,7 +35,7 @@ pub fn explore(script: &[u8]) {
     let mut position = Cell::new(0, 0);
     let mut robot = Box::new(Robot::vacant());
     robot
-        .reset(Config::new(radius), RobotId(3), extent, position)
+        .reset(Config::new(), RobotId(3), extent, position)
         .expect("the grid fits");
     for _ in 0..PATIENCE {
         robot.observe(&look(position, radius, is_blocked));

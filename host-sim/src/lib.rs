@@ -7,11 +7,14 @@
 //! [`run::run`] gives its outcome and, if asked, the [`Trace`](trace::Trace)
 //! that everything else is drawn from.
 
+#[cfg(unix)]
+pub mod chip;
 mod coverage;
 pub mod draw;
 pub mod experiments;
 pub mod fleet;
 pub mod live;
+pub mod measured;
 pub mod medium;
 pub mod peers;
 pub mod planners;

@@ -19,6 +19,12 @@ enum Command {
     Compare(command::Compare),
     /// Draw the figures of the papers anew, with a page that shows them.
     Figures(command::Figures),
+    /// The same with every robot's planner on an emulated chip of its own.
+    ///
+    /// Decides what `explore` decides, and tells what it takes of the chip.
+    /// Exit status: as of `explore`.
+    #[cfg(unix)]
+    Firmware(command::Firmware),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
     /// Serve a map to robots that are processes of their own.
@@ -35,6 +41,8 @@ fn main() -> ExitCode {
         Command::Explore(explore) => explore.run(),
         Command::Compare(compare) => compare.run(),
         Command::Figures(figures) => figures.run(),
+        #[cfg(unix)]
+        Command::Firmware(firmware) => firmware.run(),
         Command::Generate(generate) => generate.run(),
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use bridge::PlannerConfig;
 use clap::ValueEnum;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
@@ -38,6 +39,19 @@ pub enum PlannerKind {
     Bmilrv,
 }
 
+/// What a robot starts with.
+#[derive(Clone, Copy, Debug)]
+pub struct Setup {
+    /// Its number.
+    pub id: RobotId,
+    /// Size of the grid.
+    pub extent: Extent,
+    /// Where it stands.
+    pub start: Cell,
+    /// How it uses the radio.
+    pub link: LinkConfig,
+}
+
 impl PlannerKind {
     /// How many times longer than others this planner may take: BMILRV goes
     /// round loops many times.
@@ -48,20 +62,37 @@ impl PlannerKind {
         }
     }
 
-    /// The planner of robot `id`, which sees `range` cells far and starts at
-    /// `start` on a grid of `extent`, and uses the radio by `link`.
+    /// How a planner decides that can run on a chip, and runs in the same way on
+    /// the host. `None`: this one has a view of all robots, which no chip has.
+    pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
+        let Setup { link, .. } = setup;
+        let local_frontiers = |second_chance| {
+            PlannerConfig::LocalFrontiers(local_frontiers::Config {
+                second_chance,
+                link,
+                ..Default::default()
+            })
+        };
+        match self {
+            Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config {
+                link,
+                ..explorer::Config::new()
+            })),
+            Self::LocalFrontiers => Some(local_frontiers(false)),
+            Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
+            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong | Self::Bmilrv => None,
+        }
+    }
+
+    /// The planner of a robot that is set up like this.
     ///
     /// # Errors
     /// A grid that a map of `TW`×`TH` tiles does not hold.
     pub fn build<const TW: usize, const TH: usize>(
         self,
-        id: RobotId,
-        range: u8,
-        extent: Extent,
-        start: Cell,
-        link: LinkConfig,
+        setup: Setup,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
-        self.build_among(&Marks::new(extent, start), id, range, extent, start, link)
+        self.build_among(&Marks::new(setup.extent, setup.start), setup)
     }
 
     /// The same, in a team that shares `marks`, if the planner works by marks.
@@ -71,24 +102,21 @@ impl PlannerKind {
     pub fn build_among<const TW: usize, const TH: usize>(
         self,
         marks: &Marks,
-        id: RobotId,
-        range: u8,
-        extent: Extent,
-        start: Cell,
-        link: LinkConfig,
+        setup: Setup,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+        if let Some(config) = self.on_chip(setup) {
+            return on_host(config, setup);
+        }
+        let Setup {
+            id,
+            extent,
+            start,
+            link,
+        } = setup;
         Ok(match self {
-            Self::Explorer => {
-                let config = explorer::Config {
-                    link,
-                    ..explorer::Config::new()
-                };
-                let mut explorer = Box::new(Explorer::vacant());
-                explorer.reset(config, id, extent, start)?;
-                explorer
+            Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {
+                unreachable!("planner-core has them")
             }
-            Self::LocalFrontiers => local_frontiers(false, id, extent, start, link)?,
-            Self::LocalFrontiersSecondChance => local_frontiers(true, id, extent, start, link)?,
             Self::Closest => Box::new(Peer::new(Closest, id, extent, start, link)?),
             Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start, link)?),
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
@@ -100,21 +128,26 @@ impl PlannerKind {
     }
 }
 
-fn local_frontiers<const TW: usize, const TH: usize>(
-    second_chance: bool,
-    id: RobotId,
-    extent: Extent,
-    start: Cell,
-    link: LinkConfig,
+/// A planner of planner-core, here.
+fn on_host<const TW: usize, const TH: usize>(
+    config: PlannerConfig,
+    setup: Setup,
 ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
-    let config = local_frontiers::Config {
-        second_chance,
-        link,
-        ..Default::default()
-    };
-    let mut planner = Box::new(LocalFrontiers::vacant());
-    planner.reset(config, id, extent, start)?;
-    Ok(planner)
+    let Setup {
+        id, extent, start, ..
+    } = setup;
+    Ok(match config {
+        PlannerConfig::Explorer(config) => {
+            let mut planner = Box::new(Explorer::vacant());
+            planner.reset(config, id, extent, start)?;
+            planner
+        }
+        PlannerConfig::LocalFrontiers(config) => {
+            let mut planner = Box::new(LocalFrontiers::vacant());
+            planner.reset(config, id, extent, start)?;
+            planner
+        }
+    })
 }
 
 /// The name used on the command line, for example `closest`.

@@ -5,18 +5,17 @@ mod book;
 use std::sync::Arc;
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
-use planner_core::{Cell, Extent, Stop, sight};
+use planner_core::{Cell, Extent, Planner, Stop, sight};
 use thiserror::Error;
 
 use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
 use crate::medium::{AirFaults, MediumKind};
 use crate::peers::Marks;
-use crate::planners::PlannerKind;
-use book::Book;
-
+use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
 use crate::world::{Reachable, World};
+use book::Book;
 
 /// Everything that a run follows from. The same scenario gives the same run on
 /// every machine.
@@ -290,6 +289,41 @@ pub struct Options<'a> {
     pub progress: Option<&'a mut dyn FnMut(Progress)>,
 }
 
+/// Where the planners of a run are.
+pub trait Host: Clone + 'static {
+    /// The planner of a robot.
+    ///
+    /// # Panics
+    /// If the grid does not fit a map of `TW`×`TH` tiles.
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        kind: PlannerKind,
+        setup: Setup,
+    ) -> Box<dyn Planner<TW, TH>>;
+
+    /// Whether the run has to end because a planner is lost.
+    fn has_failed(&self) -> bool;
+}
+
+/// In this process.
+#[derive(Clone, Copy, Debug)]
+pub struct Here;
+
+impl Host for Here {
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        kind: PlannerKind,
+        setup: Setup,
+    ) -> Box<dyn Planner<TW, TH>> {
+        kind.build(setup)
+            .expect("the compiled size holds the world")
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
 /// Runs a scenario until every living robot has stopped or time is up.
 ///
 /// # Errors
@@ -298,14 +332,26 @@ pub fn run(
     scenario: &Scenario,
     options: Options<'_>,
 ) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+    run_on(&Here, scenario, options)
+}
+
+/// As [`run`], with planners that are elsewhere.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn run_on(
+    host: &impl Host,
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> Result<(Outcome, Option<Trace>), ScenarioError> {
     scenario.check()?;
     let Extent { width, height } = scenario.world.extent();
     Ok(match width.max(height) {
-        0..=32 => run_compiled::<4, 4>(scenario, options),
-        33..=64 => run_compiled::<8, 8>(scenario, options),
-        65..=128 => run_compiled::<16, 16>(scenario, options),
-        129..=256 => run_compiled::<32, 32>(scenario, options),
-        _ => run_compiled::<64, 64>(scenario, options),
+        0..=32 => compiled_on::<4, 4>(host, scenario, options),
+        33..=64 => compiled_on::<8, 8>(host, scenario, options),
+        65..=128 => compiled_on::<16, 16>(host, scenario, options),
+        129..=256 => compiled_on::<32, 32>(host, scenario, options),
+        _ => compiled_on::<64, 64>(host, scenario, options),
     })
 }
 
@@ -317,7 +363,14 @@ pub fn fleet<const TW: usize, const TH: usize>(
     scenario: &Scenario,
     sensor: Arc<Sensor>,
 ) -> Fleet<TW, TH> {
-    let extent = scenario.world.extent();
+    fleet_on(&Here, scenario, sensor)
+}
+
+fn fleet_on<const TW: usize, const TH: usize>(
+    host: &impl Host,
+    scenario: &Scenario,
+    sensor: Arc<Sensor>,
+) -> Fleet<TW, TH> {
     let rules = Rules {
         solid: scenario.solid,
         faults: scenario.faults.clone(),
@@ -326,12 +379,22 @@ pub fn fleet<const TW: usize, const TH: usize>(
         bytes_per_tick: scenario.byte_budget,
         ..LinkConfig::new()
     };
-    let (planner, range) = (scenario.planner, scenario.range);
+    let (host, kind) = (host.clone(), scenario.planner);
+    let extent = scenario.world.extent();
     let marks = Marks::new(extent, scenario.starts[0]);
     let build = Box::new(move |id, start| {
-        planner
-            .build_among(&marks, id, range, extent, start, link)
-            .expect("the compiled size holds the world")
+        let setup = Setup {
+            id,
+            extent,
+            start,
+            link,
+        };
+        match kind {
+            PlannerKind::Bmilrv => kind
+                .build_among(&marks, setup)
+                .expect("the compiled size holds the world"),
+            _ => host.planner(kind, setup),
+        }
     });
     let medium = scenario.medium.build(
         scenario.sync,
@@ -343,7 +406,7 @@ pub fn fleet<const TW: usize, const TH: usize>(
     Fleet::new(sensor, medium, rules, build, &scenario.starts)
 }
 
-/// Runs a checked scenario on maps of `TW`×`TH` tiles. The result does not
+/// Runs a checked scenario with maps of `TW`×`TH` tiles. The result does not
 /// depend on them.
 ///
 /// # Panics
@@ -352,13 +415,21 @@ pub fn run_compiled<const TW: usize, const TH: usize>(
     scenario: &Scenario,
     options: Options<'_>,
 ) -> (Outcome, Option<Trace>) {
+    compiled_on::<TW, TH>(&Here, scenario, options)
+}
+
+fn compiled_on<const TW: usize, const TH: usize>(
+    host: &impl Host,
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> (Outcome, Option<Trace>) {
     let sensor = options
         .sensor
         .unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
-    let mut fleet = fleet::<TW, TH>(scenario, sensor.clone());
+    let mut fleet = fleet_on::<TW, TH>(host, scenario, sensor.clone());
     let mut book = Book::new(scenario, sensor, options.trace);
     let mut progress = options.progress;
-    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() {
+    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() && !host.has_failed() {
         fleet.tick();
         book.note(&fleet);
         if let Some(progress) = &mut progress {

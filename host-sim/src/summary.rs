@@ -3,6 +3,7 @@
 use planner_core::Stop;
 use serde::Serialize;
 
+use crate::measured::Measured;
 use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome, Scenario};
@@ -59,6 +60,9 @@ pub struct Summary {
     pub solid: bool,
     /// Robot by robot.
     pub robots: Vec<RobotSummary>,
+    /// What the planners took, if they ran on chips.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub firmware: Option<Measured>,
 }
 
 /// What one robot came to.
@@ -126,6 +130,7 @@ impl Summary {
                 .zip(&outcome.robots)
                 .map(|(start, robot)| RobotSummary::new((start.x, start.y), robot))
                 .collect(),
+            firmware: None,
         }
     }
 }

@@ -11,11 +11,13 @@ use crate::sight::Sighting;
 /// Names a robot. Lower ids win ties.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotId(pub u8);
 
 /// What the robot shall do now. Every [`Planner::tick`] returns one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Action {
     /// Go to the neighbouring cell; then [`Planner::report`] how it went.
     Move(Direction),
@@ -28,6 +30,7 @@ pub enum Action {
 /// Why a robot stopped. "Done" and "gave up" never look alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stop {
     /// Every cell that can be reached from here is known.
     Complete,
@@ -92,6 +95,7 @@ impl fmt::Display for Stop {
 /// How the step of the last [`Action::Move`] went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Motion {
     /// The robot is on the cell that it was sent to.
     Moved,
@@ -106,6 +110,7 @@ pub enum Motion {
 /// needed for completeness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Status {
     /// Where it is.
     pub position: Cell,
@@ -118,6 +123,7 @@ pub struct Status {
 /// The part of a robot's state that others decide by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Activity {
     /// Exploring.
     Exploring,

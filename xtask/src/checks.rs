@@ -116,6 +116,11 @@ const CHECKS: &[Check] = &[
         run: firmware::explores,
     },
     Check {
+        name: "loop",
+        title: "every planner decides on emulated chips as on the host",
+        run: firmware::decides_as_the_host,
+    },
+    Check {
         name: "stack-overflow",
         title: "a stack overflow faults at once",
         run: firmware::stack_overflow_faults,

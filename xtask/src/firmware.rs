@@ -36,17 +36,95 @@ impl fmt::Display for Image {
     }
 }
 
-/// Builds the image that explores.
-pub(crate) fn build() -> Result<Image> {
-    install::target(TARGET)?;
-    cargo_build().arg("--bin=firmware").run()?;
-    let path = path("firmware");
+/// A board that QEMU emulates, by QEMU's name of it.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Machine {
+    /// STM32F405, the chip of the Crazyflie: Cortex-M4F.
+    Netduinoplus2,
+    /// Cortex-M3.
+    Mps2An385,
+    /// nRF51: Cortex-M0.
+    Microbit,
+}
+
+impl Machine {
+    const fn target(self) -> &'static str {
+        match self {
+            Self::Netduinoplus2 => TARGET,
+            Self::Mps2An385 => "thumbv7m-none-eabi",
+            Self::Microbit => "thumbv6m-none-eabi",
+        }
+    }
+}
+
+/// Builds the images of a board: the one that explores a built-in map, where the
+/// board has room for it, and the robot of `host-sim firmware`. Returns the latter
+/// last.
+pub(crate) fn build_images(machine: Machine) -> Result<Vec<Image>> {
+    let names: &[&str] = match machine {
+        Machine::Netduinoplus2 => &["firmware", "robot"],
+        Machine::Mps2An385 | Machine::Microbit => &["robot"],
+    };
+    names
+        .iter()
+        .map(|name| build(name, machine.target()))
+        .collect()
+}
+
+fn build(name: &str, target: &str) -> Result<Image> {
+    install::target(target)?;
+    cargo_build(target).arg(format!("--bin={name}")).run()?;
+    let path = path(name, target);
     measure(&path).with_context(|| format!("{}: cannot be measured", path.display()))
+}
+
+/// Every planner decides on every board as on the host, over whole explorations,
+/// and its calls keep to the budget.
+pub(crate) fn decides_as_the_host() -> Result<String> {
+    for machine in [
+        Machine::Netduinoplus2,
+        Machine::Mps2An385,
+        Machine::Microbit,
+    ] {
+        build_images(machine)?;
+    }
+    install::qemu()?;
+    let output = show(
+        cargo([
+            "test",
+            "--package=host-sim",
+            "--test=chips",
+            "--locked",
+            "--",
+        ])
+        .args(["--ignored", "--nocapture", "--test-threads=1"]),
+    )?;
+    print!("{}", output.stdout);
+    if !output.success() {
+        eprint!("{}", output.stderr);
+        bail!("a chip decides otherwise than the host, or does not get so far");
+    }
+    let measured: Vec<(&str, u64)> = output
+        .stdout
+        .lines()
+        .filter(|line| line.starts_with("loop_"))
+        .filter_map(|line| line.split_once(": "))
+        .map(|(name, value)| Ok((name, value.parse().with_context(|| name.to_owned())?)))
+        .collect::<Result<_>>()?;
+    let within = budget::Budget::read(shell::root())
+        .and_then(|budget| budget.check("loop_", &measured))
+        .map_err(|error| anyhow!(error))?;
+    for line in &within {
+        println!("{line}");
+    }
+    let explorations =
+        entry(&output.stdout, "explorations").context("the tests do not report `explorations`")?;
+    Ok(format!("{explorations} explorations"))
 }
 
 /// Builds the image, runs it and shows its report.
 pub(crate) fn build_and_run() -> Result<()> {
-    let image = build()?;
+    let image = build("firmware", TARGET)?;
     install::qemu()?;
     let output = emulate("firmware")?;
     print!("{}", output.stdout);
@@ -60,7 +138,7 @@ pub(crate) fn build_and_run() -> Result<()> {
 
 /// The image explores its map completely, within the budget. Returns what it took.
 pub(crate) fn explores() -> Result<String> {
-    let image = build()?;
+    let image = build("firmware", TARGET)?;
     install::qemu()?;
     let output = emulate("firmware")?;
     print!("{}", output.stdout);
@@ -96,7 +174,7 @@ pub(crate) fn explores() -> Result<String> {
 pub(crate) fn stack_overflow_faults() -> Result<String> {
     install::target(TARGET)?;
     install::qemu()?;
-    cargo_build().arg("--example=stack-overflow").run()?;
+    cargo_build(TARGET).arg("--example=stack-overflow").run()?;
     let output = emulate("examples/stack-overflow")?;
     print!("{}", output.stderr);
     if output.status != Some(1) || !output.stderr.contains("the stack overflowed") {
@@ -121,7 +199,7 @@ pub(crate) fn too_large_is_refused() -> Result<String> {
 /// panic handler does not link.
 pub(crate) fn has_no_panic() -> Result<String> {
     must_not_link("no-panic-control", NO_PANIC)?;
-    let output = show(cargo_build().arg("--example=no-panic"))?;
+    let output = show(cargo_build(TARGET).arg("--example=no-panic"))?;
     if output.success() {
         return Ok(String::new());
     }
@@ -166,7 +244,7 @@ const NO_PANIC: &str = "undefined symbol: a_panic_is_reachable";
 
 fn must_not_link(example: &str, reason: &str) -> Result<String> {
     install::target(TARGET)?;
-    let output = show(cargo_build().arg(format!("--example={example}")))?;
+    let output = show(cargo_build(TARGET).arg(format!("--example={example}")))?;
     if output.success() {
         bail!("the example {example} links, and must not");
     }
@@ -183,21 +261,21 @@ fn show(command: Command) -> Result<Output> {
     command.output()
 }
 
-fn cargo_build() -> Command {
+fn cargo_build(target: &str) -> Command {
     cargo([
         "build",
         "--profile=firmware",
         "-p=firmware",
         "--target",
-        TARGET,
+        target,
     ])
 }
 
-fn path(image: &str) -> PathBuf {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
+fn path(image: &str, target: &str) -> PathBuf {
+    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     shell::root()
+        .join(folder)
         .join(target)
-        .join(TARGET)
         .join("firmware")
         .join(image)
 }
@@ -214,7 +292,7 @@ fn emulate(image: &str) -> Result<Output> {
             "none",
         ])
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
-        .arg(path(image));
+        .arg(path(image, TARGET));
     println!("$ {run}");
     run.output_within(LIMIT)
 }

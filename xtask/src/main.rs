@@ -37,8 +37,12 @@ enum Task {
         #[arg(long)]
         list: bool,
     },
-    /// Builds the image for the chip; prints its path, flash and static RAM.
-    BuildFirmware,
+    /// Builds the images for a chip; prints their path, flash and static RAM.
+    BuildFirmware {
+        /// The board, by QEMU's name of it.
+        #[arg(long, value_name = "NAME", default_value = "netduinoplus2")]
+        machine: firmware::Machine,
+    },
     /// Builds the image and runs it in QEMU (an emulated STM32F405).
     RunFirmware,
     /// Fuzzes the radio: each target for so many seconds.
@@ -62,7 +66,8 @@ fn main() -> ExitCode {
             Ok(())
         }
         Task::Test { only, .. } => checks::run(&only),
-        Task::BuildFirmware => firmware::build().map(|image| println!("{image}")),
+        Task::BuildFirmware { machine } => firmware::build_images(machine)
+            .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::Soak { runs } => soak(runs),

@@ -1,5 +1,6 @@
 //! `host-sim explore`.
 
+use std::error::Error;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,9 +9,10 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw;
+use host_sim::measured::Measured;
 use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{self, Options, Progress, Scenario};
+use host_sim::run::{self, Here, Host, Options, Progress, Scenario};
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -116,6 +118,15 @@ impl FromStr for Start {
 
 impl Explore {
     pub(crate) fn run(self) -> Done {
+        self.run_on(Here, || Ok(None))
+    }
+
+    /// Explores with planners that are on `host`, which tells at the end what they took.
+    pub(super) fn run_on(
+        self,
+        host: impl Host,
+        measured: impl FnOnce() -> Result<Option<Measured>, Box<dyn Error>>,
+    ) -> Done {
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
         for note in world.notes() {
             eprintln!("note: {}: {note}", self.map.display());
@@ -135,11 +146,13 @@ impl Explore {
             progress: Some(&mut advance),
             ..Options::default()
         };
-        let (outcome, trace) = run::run(&scenario, options)?;
+        let (outcome, trace) = run::run_on(&host, &scenario, options)?;
+        drop(host);
         let trace = trace.expect("a trace was asked for");
         bar.finish_and_clear();
 
-        let summary = Summary::new(&scenario, &outcome, trace.digest());
+        let mut summary = Summary::new(&scenario, &outcome, trace.digest());
+        summary.firmware = measured()?;
         let json = serde_json::to_string_pretty(&summary)?;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
@@ -180,7 +193,7 @@ impl Explore {
         }
     }
 
-    fn scenario(&self, world: Arc<World>) -> Result<Scenario, Box<dyn std::error::Error>> {
+    fn scenario(&self, world: Arc<World>) -> Result<Scenario, Box<dyn Error>> {
         let starts = self.starts(&world)?;
         let starts = world.place(self.robots.into(), &starts, self.solid)?;
         let mut scenario = Scenario::new(world, starts, self.planner);

@@ -3,6 +3,8 @@
 mod compare;
 mod explore;
 mod figures;
+#[cfg(unix)]
+mod firmware;
 mod folder;
 mod generate;
 mod live;
@@ -14,6 +16,8 @@ use std::process::ExitCode;
 pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
 pub(crate) use figures::Figures;
+#[cfg(unix)]
+pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
 pub(crate) use live::{Robot, World};
 

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use host_sim::measured::Measured;
 use host_sim::summary::{RobotSummary, Summary};
 
 /// Prints the summary on standard output.
@@ -44,8 +45,37 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             state(robot)
         );
     }
+    if let Some(measured) = &summary.firmware {
+        print_measured(measured);
+    }
     println!("  trace digest       {}", summary.trace_digest);
     println!("  files in           {}", out.display());
+}
+
+/// The table of instructions and memory.
+fn print_measured(measured: &Measured) {
+    println!(
+        "  on {:<14} {:>9} {:>9} {:>9} instructions {:>6} bytes of stack",
+        measured.machine, "calls", "mean", "largest", "most"
+    );
+    for (call, tally) in &measured.calls {
+        println!(
+            "    {:<13} {:>9} {:>9} {:>9} {:>19}",
+            call.to_string(),
+            tally.calls,
+            tally.mean,
+            tally.largest,
+            tally.stack_bytes
+        );
+    }
+    println!(
+        "    planner {} bytes; image: {} bytes of flash, {} of statics, at most {} of {} of stack",
+        measured.planner_bytes,
+        measured.flash_bytes,
+        measured.static_bytes,
+        measured.peak_stack_bytes,
+        measured.stack_bytes
+    );
 }
 
 /// What an incomplete run left, and why.

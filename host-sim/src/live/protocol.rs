@@ -30,7 +30,6 @@ pub(super) enum FromWorld {
     Welcome {
         width: u16,
         height: u16,
-        range: u8,
         robots: u8,
         at: (i16, i16),
     },

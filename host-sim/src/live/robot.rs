@@ -9,7 +9,7 @@ use planner_core::{Action, Cell, Extent, Motion, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
 use super::protocol::{FromRobot, FromWorld, Line, go};
-use crate::planners::PlannerKind;
+use crate::planners::{PlannerKind, Setup};
 
 /// Longest silence of the world.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -67,7 +67,6 @@ pub fn explore(options: &RobotOptions) -> io::Result<RobotReport> {
     let FromWorld::Welcome {
         width,
         height,
-        range,
         at: (x, y),
         ..
     } = welcome
@@ -76,7 +75,6 @@ pub fn explore(options: &RobotOptions) -> io::Result<RobotReport> {
     };
     let place = Place {
         extent: Extent::new(width, height),
-        range,
         start: Cell::new(x, y),
     };
     match width.max(height) {
@@ -89,7 +87,6 @@ pub fn explore(options: &RobotOptions) -> io::Result<RobotReport> {
 /// Where a robot finds itself.
 struct Place {
     extent: Extent,
-    range: u8,
     start: Cell,
 }
 
@@ -105,7 +102,12 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
         let id = RobotId(options.robot);
         let planner = options
             .planner
-            .build(id, place.range, place.extent, place.start, options.link)
+            .build(Setup {
+                id,
+                extent: place.extent,
+                start: place.start,
+                link: options.link,
+            })
             .map_err(io::Error::other)?;
         Ok(Self {
             planner,

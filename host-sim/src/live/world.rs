@@ -193,7 +193,6 @@ impl Server {
         FromWorld::Welcome {
             width: extent.width,
             height: extent.height,
-            range: self.options.range,
             robots: self.bodies.len() as u8,
             at: (at.x, at.y),
         }

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use super::air::Air;
 use super::{AirFaults, Medium, MediumKind, Partition, Reach};
 use crate::fleet::{Death, Faults, Fleet, Robot, Rules};
-use crate::planners::PlannerKind;
+use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate};
 
@@ -86,7 +86,7 @@ proptest! {
         let fleet = |medium| {
             let extent = world.extent();
             let build = Box::new(move |id, start| {
-                planner.build(id, 4, extent, start, LinkConfig::new()).unwrap()
+                planner.build(Setup { id, extent, start, link: LinkConfig::new() }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
             Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), build, &starts)

@@ -6,6 +6,7 @@
 /// planner from `.bss` to `.data`, and so into flash.
 #[repr(u8)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Maybe<T> {
     Nothing = 0,
     Just(T) = 1,

@@ -47,6 +47,7 @@ use crate::sight::Sighting;
 /// How an explorer decides. One configuration serves a whole fleet; none of it
 /// depends on the map's size or the number of robots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Tile operations a tick for the far search.
     pub slice: u32,

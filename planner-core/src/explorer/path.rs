@@ -8,7 +8,9 @@ pub(crate) const CAPACITY: usize = 256;
 /// The next steps of a way, at most 256: the rest of a longer one is looked for
 /// when these are used up. 68 bytes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Path {
+    #[cfg_attr(feature = "serde", serde(with = "serde_bytes"))]
     steps: [u8; CAPACITY / 4],
     /// Where the first step lies in the ring.
     first: u8,

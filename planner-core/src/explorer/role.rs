@@ -11,6 +11,7 @@ use crate::planner::{RobotId, Stop};
 
 /// Where a role is going, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Plan {
     pub(crate) goal: Cell,
     /// Steps to the goal at most.
@@ -21,6 +22,7 @@ pub(crate) struct Plan {
 
 /// What a robot is about to do. Robot `k` starts with role `k`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Role {
     pub(crate) rank: RobotId,
     pub(crate) plan: Option<Plan>,

@@ -10,6 +10,7 @@ use crate::radio::LinkConfig;
 /// Not a parameter: a goal must be connected to the robot through cells in view,
 /// since step 3c could not be carried out otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Moves for which a goal is kept before another one may be chosen, `d_max`
     /// [Gauville2019 §3.2]. 2 in the paper; 0 chooses anew on every tick.
@@ -73,6 +74,7 @@ impl Default for Config {
 /// Which cells are the neighbours that make a frontier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Neighbourhood {
     /// Those with a side in common.
     Four,
@@ -101,6 +103,7 @@ impl Neighbourhood {
 /// How far two cells are apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Distance {
     /// In a straight line.
     Euclidean,

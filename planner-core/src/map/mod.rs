@@ -17,6 +17,7 @@ use crate::sight::Sighting;
 /// A map does not hold the grid that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ExtentError {
     /// A grid without cells.
     Empty,
@@ -46,6 +47,7 @@ impl core::error::Error for ExtentError {}
 /// What a map learnt from a sighting, a tile or another map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Learnt {
     /// Cells that became known.
     pub cells: u32,

@@ -17,6 +17,7 @@ const EAST_COLUMN: u64 = WEST_COLUMN << 7;
 /// maximum, hence commutative, associative, idempotent, and it only ever adds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tile {
     /// Cells seen by anybody.
     pub known: u64,
@@ -63,6 +64,7 @@ impl Tile {
 /// Where a tile is: column and row in tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TileIndex {
     /// Column, in tiles.
     pub x: u8,

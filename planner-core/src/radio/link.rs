@@ -13,6 +13,7 @@ use crate::planner::{RobotId, Status};
 /// understand each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct GridId(pub u16);
 
 impl GridId {
@@ -66,6 +67,7 @@ impl core::fmt::Debug for Key {
 
 /// How a robot uses the radio. One configuration serves a whole fleet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinkConfig {
     /// Where cell `(0, 0)` lies in the fleet's common frame, in millimetres.
     pub origin_mm: (i32, i32),
@@ -74,7 +76,9 @@ pub struct LinkConfig {
     /// Bytes that the robot may send a tick on average. Less than a frame: it
     /// sends one every few ticks. 0: it only listens.
     pub bytes_per_tick: u16,
-    /// Frames are signed with it, and only those signed with it are taken.
+    /// Frames are signed with it, and only those signed with it are taken. A
+    /// secret is not serialised.
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub key: Option<Key>,
 }
 
@@ -109,6 +113,7 @@ impl Default for LinkConfig {
 /// What a received frame brought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Heard {
     /// Who sent it.
     pub from: RobotId,

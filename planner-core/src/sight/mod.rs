@@ -23,6 +23,7 @@ const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
 /// Bit `x - centre.x + 15` of row `y - centre.y + 15` is the cell `(x, y)`. No
 /// cell is both free and blocked: blocked wins. 252 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sighting {
     centre: Cell,
     free: [u32; SPAN],

@@ -1,0 +1,24 @@
+//! The dialogue between the simulator, which plays the world and the radio, and
+//! the image of one robot, which runs the planner.
+//!
+//! It is in lock step: the simulator sends a [`Request`], one verb of
+//! [`Planner`](planner_core::Planner), and waits for the [`Answer`]. Either goes
+//! as [postcard](https://postcard.jamesmunns.com) behind its length in two bytes,
+//! little-endian.
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(test)]
+extern crate std;
+
+mod message;
+mod wire;
+
+pub use message::{
+    Answer, Cost, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome,
+    fingerprint,
+};
+pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
+
+/// Raised whenever a message changes: both sides must be built from one source.
+pub const VERSION: u8 = 1;

@@ -1,0 +1,197 @@
+//! The planner, and what the simulator asks of it.
+
+use bridge::{
+    Answer, Cost, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request, Rows, State,
+    VERSION, Welcome, fingerprint,
+};
+use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
+use planner_core::explorer::Explorer;
+use planner_core::local_frontiers::LocalFrontiers;
+use planner_core::map::{ExtentError, Map, TileIndex, TileSet};
+use planner_core::radio::{MAX_LEN, TileRecord};
+use planner_core::{Cell, Extent, Planner, RobotId};
+use static_cell::ConstStaticCell;
+
+use crate::host::{Host, Trouble};
+
+// Every planner that the image can host has its place; one of them is used.
+static EXPLORER: ConstStaticCell<Explorer<COLUMNS, ROWS>> =
+    ConstStaticCell::new(Explorer::vacant());
+static LOCAL_FRONTIERS: ConstStaticCell<LocalFrontiers<COLUMNS, ROWS>> =
+    ConstStaticCell::new(LocalFrontiers::vacant());
+
+/// Tiles of another robot's map, on their way into the planner.
+static STAGE: ConstStaticCell<Stage> = ConstStaticCell::new(Stage {
+    map: Map::vacant(),
+    tiles: TileSet::new(),
+});
+
+static INBOX: ConstStaticCell<Inbox> = ConstStaticCell::new(Inbox::new());
+static OUTBOX: ConstStaticCell<[u8; MAX_MESSAGE]> = ConstStaticCell::new([0; MAX_MESSAGE]);
+
+/// What [`Planner::join`] takes. All that ever was put aside for this robot stays
+/// on the map: it was joined before, so joining it again changes nothing.
+struct Stage {
+    map: Map<COLUMNS, ROWS>,
+    tiles: TileSet<ROWS>,
+}
+
+/// Answers requests until the simulator has none left.
+pub(crate) fn serve() -> Result<(), Trouble> {
+    let host = Host::connect()?;
+    let (inbox, outbox) = (INBOX.take(), OUTBOX.take());
+    let timer = cortex_m::Peripherals::take().map(|chip| chip.SYST);
+    let stopwatch = Stopwatch::start(timer.expect("nobody else takes the timer"));
+
+    let Request::Start {
+        planner,
+        id,
+        extent,
+        start,
+    } = host.ask(inbox)?
+    else {
+        return Err(Trouble::NotStarted);
+    };
+    let stage = STAGE.take();
+    let prepared = prepare(planner, id, extent, start).and_then(|(planner, size)| {
+        stage.map.reset(extent)?;
+        Ok((planner, size))
+    });
+    let (planner, size) = match prepared {
+        Ok(prepared) => prepared,
+        Err(error) => return host.answer(&Welcome::Refused(error), outbox),
+    };
+    let hello = Hello {
+        version: VERSION,
+        clock_hz: CLOCK_HZ,
+    };
+    host.answer(&Welcome::Ready(hello), outbox)?;
+    loop {
+        let request = host.ask(inbox)?;
+        let mut frame = [0; MAX_LEN];
+        let Some((reply, cost)) = obey(planner, size, stage, &stopwatch, request, &mut frame)
+        else {
+            return Ok(());
+        };
+        let answer = Answer {
+            cost,
+            state: state(planner),
+            reply,
+        };
+        host.answer(&answer, outbox)?;
+    }
+}
+
+type Robot = dyn Planner<COLUMNS, ROWS>;
+
+/// Sets up the planner, in place. Returns its size too.
+fn prepare(
+    planner: PlannerConfig,
+    id: RobotId,
+    extent: Extent,
+    start: Cell,
+) -> Result<(&'static mut Robot, usize), ExtentError> {
+    Ok(match planner {
+        PlannerConfig::Explorer(config) => {
+            let explorer = EXPLORER.take();
+            explorer.reset(config, id, extent, start)?;
+            (explorer, size_of::<Explorer<COLUMNS, ROWS>>())
+        }
+        PlannerConfig::LocalFrontiers(config) => {
+            let planner = LOCAL_FRONTIERS.take();
+            planner.reset(config, id, extent, start)?;
+            (planner, size_of::<LocalFrontiers<COLUMNS, ROWS>>())
+        }
+    })
+}
+
+/// Does what is asked for, and says what the planner's call took.
+/// `None`: the simulator has finished.
+fn obey<'a>(
+    planner: &mut Robot,
+    size: usize,
+    stage: &mut Stage,
+    stopwatch: &Stopwatch,
+    request: Request<'_>,
+    frame: &'a mut [u8; MAX_LEN],
+) -> Option<(Reply<'a>, Cost)> {
+    Some(match request {
+        Request::Observe(sighting) => {
+            let (learnt, cost) = stopwatch.measure(|| planner.observe(&sighting));
+            (Reply::Learnt(learnt), cost)
+        }
+        Request::Tick => {
+            let (action, cost) = stopwatch.measure(|| planner.tick());
+            (Reply::Action(action), cost)
+        }
+        Request::Report(motion) => {
+            let ((), cost) = stopwatch.measure(|| planner.report(motion));
+            (Reply::Done, cost)
+        }
+        Request::Transmit => {
+            let (length, cost) = stopwatch.measure(|| planner.transmit(frame));
+            (
+                Reply::Frame(length.and_then(|length| frame.get(..length))),
+                cost,
+            )
+        }
+        Request::Receive(bytes) => {
+            let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));
+            (Reply::Heard(heard), cost)
+        }
+        Request::TakeChanged => {
+            let (changed, cost) = stopwatch.measure(|| planner.take_changed());
+            let rows = (0..ROWS as u8).map(|y| changed.row(y)).collect::<Rows>();
+            (Reply::Changed(rows), cost)
+        }
+        Request::Stage(records) => {
+            for record in records {
+                stage.map.join_tile(record.at, record.tile);
+                stage.tiles.insert(record.at);
+            }
+            (Reply::Done, Cost::default())
+        }
+        Request::Join => {
+            let (learnt, cost) = stopwatch.measure(|| planner.join(&stage.map, &stage.tiles));
+            stage.tiles.clear();
+            (Reply::Learnt(learnt), cost)
+        }
+        Request::Hear(id, status) => {
+            let ((), cost) = stopwatch.measure(|| planner.hear(id, status));
+            (Reply::Done, cost)
+        }
+        Request::Adopt(role) => {
+            let ((), cost) = stopwatch.measure(|| planner.adopt(role));
+            (Reply::Done, cost)
+        }
+        Request::Memory => (Reply::Memory(memory(size)), Cost::default()),
+        Request::Start { .. } | Request::End => return None,
+    })
+}
+
+fn state(planner: &Robot) -> State {
+    let status = planner.status();
+    // Beyond the map's edge there is no robot.
+    let at = TileIndex::of(status.position).map_or(TileIndex::new(0, 0), |(at, _)| at);
+    State {
+        status,
+        work: planner.work(),
+        map: fingerprint(planner.map()),
+        here: TileRecord {
+            at,
+            tile: planner.map().tile_inside(at),
+        },
+        role: planner.role(),
+    }
+}
+
+fn memory(planner: usize) -> Memory {
+    let bytes = |size: usize| size as u32;
+    Memory {
+        planner: bytes(planner),
+        statics: bytes(memory::statics()),
+        flash: bytes(memory::flash()),
+        stack_peak: bytes(stack::peak()),
+        stack: bytes(stack::size()),
+    }
+}

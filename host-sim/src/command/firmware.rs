@@ -1,0 +1,29 @@
+//! `host-sim firmware`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use host_sim::chip::{Machine, Swarm};
+
+use super::{Done, Explore};
+
+#[derive(Args)]
+pub(crate) struct Firmware {
+    #[command(flatten)]
+    explore: Explore,
+    /// The board that QEMU emulates.
+    #[arg(long, value_name = "NAME", default_value = "netduinoplus2")]
+    machine: Machine,
+    /// The image. Default: what `cargo xtask build-firmware` has built for the machine.
+    #[arg(long, value_name = "FILE")]
+    image: Option<PathBuf>,
+}
+
+impl Firmware {
+    pub(crate) fn run(self) -> Done {
+        let image = self.image.unwrap_or_else(|| self.machine.image());
+        let swarm = Swarm::new(self.machine, image);
+        let host = swarm.clone();
+        self.explore.run_on(host, || Ok(Some(swarm.finish()?)))
+    }
+}

@@ -15,16 +15,16 @@ enum Command {
     /// Exit status: 0 every reachable cell was seen, 1 something was left, 2
     /// bad input.
     Explore(command::Explore),
-    /// Run planners in many worlds and compare them with a reference, in pairs.
-    Compare(command::Compare),
-    /// Draw the figures of the papers anew, with a page that shows them.
-    Figures(command::Figures),
     /// The same with every robot's planner on an emulated chip of its own.
     ///
     /// Decides what `explore` decides, and tells what it takes of the chip.
     /// Exit status: as of `explore`.
     #[cfg(unix)]
     Firmware(command::Firmware),
+    /// Run planners in many worlds and compare them with a reference, in pairs.
+    Compare(command::Compare),
+    /// Draw the figures of the papers anew, with a page that shows them.
+    Figures(command::Figures),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
     /// Serve a map to robots that are processes of their own.
@@ -39,10 +39,10 @@ enum Command {
 fn main() -> ExitCode {
     let done = match Command::parse() {
         Command::Explore(explore) => explore.run(),
-        Command::Compare(compare) => compare.run(),
-        Command::Figures(figures) => figures.run(),
         #[cfg(unix)]
         Command::Firmware(firmware) => firmware.run(),
+        Command::Compare(compare) => compare.run(),
+        Command::Figures(figures) => figures.run(),
         Command::Generate(generate) => generate.run(),
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),

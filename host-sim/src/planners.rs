@@ -53,15 +53,6 @@ pub struct Setup {
 }
 
 impl PlannerKind {
-    /// How many times longer than others this planner may take: BMILRV goes
-    /// round loops many times.
-    pub fn patience(self) -> u32 {
-        match self {
-            Self::Bmilrv => 12,
-            _ => 1,
-        }
-    }
-
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
@@ -92,18 +83,6 @@ impl PlannerKind {
         self,
         setup: Setup,
     ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
-        self.build_among(&Marks::new(setup.extent, setup.start), setup)
-    }
-
-    /// The same, in a team that shares `marks`, if the planner works by marks.
-    ///
-    /// # Errors
-    /// A grid that a map of `TW`×`TH` tiles does not hold.
-    pub fn build_among<const TW: usize, const TH: usize>(
-        self,
-        marks: &Marks,
-        setup: Setup,
-    ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
         if let Some(config) = self.on_chip(setup) {
             return on_host(config, setup);
         }
@@ -123,7 +102,10 @@ impl PlannerKind {
             Self::MinPosStrong => {
                 Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
             }
-            Self::Bmilrv => Box::new(Bmilrv::new(marks.clone(), id, extent, start, link)?),
+            Self::Bmilrv => {
+                let marks = Marks::new(extent, start);
+                Box::new(Bmilrv::new(marks, id, extent, start, link)?)
+            }
         })
     }
 }

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
 use crate::medium::{AirFaults, MediumKind};
-use crate::peers::Marks;
+use crate::peers::{Bmilrv, Marks};
 use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
@@ -92,7 +92,7 @@ impl Scenario {
     /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
     /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
-        let max_ticks = planner.patience() * default_max_ticks(&world.reachable(&starts));
+        let max_ticks = default_max_ticks(&world.reachable(&starts), planner);
         Self {
             world,
             starts,
@@ -149,11 +149,16 @@ impl Scenario {
     }
 }
 
-/// Ticks after which a run is given up if nobody says otherwise: eight for each
-/// cell that can be reached, and a thousand. One robot that walks to every cell
-/// and back needs two. Multiplied by [`PlannerKind::patience`].
-pub fn default_max_ticks(reachable: &Reachable) -> u32 {
-    1000 + 8 * reachable.count()
+/// Ticks after which a run is given up if nobody says otherwise: a thousand, and
+/// eight for each cell that can be reached, of which one robot that walks to
+/// every cell and back needs two. BMILRV may go round many loops many times: a
+/// hundred for each cell.
+pub fn default_max_ticks(reachable: &Reachable, planner: PlannerKind) -> u32 {
+    let each = match planner {
+        PlannerKind::Bmilrv => 100,
+        _ => 8,
+    };
+    1000 + each * reachable.count()
 }
 
 /// What happened in a run.
@@ -381,20 +386,23 @@ fn fleet_on<const TW: usize, const TH: usize>(
     };
     let (host, kind) = (host.clone(), scenario.planner);
     let extent = scenario.world.extent();
-    let marks = Marks::new(extent, scenario.starts[0]);
-    let build = Box::new(move |id, start| {
+    // Robots that work by marks share them, and meet where the first one starts.
+    let marks = match (kind, scenario.starts.first()) {
+        (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
+        _ => None,
+    };
+    let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
+        if let Some(marks) = &marks {
+            let robot = Bmilrv::new(marks.clone(), id, extent, start, link);
+            return Box::new(robot.expect("the compiled size holds the world"));
+        }
         let setup = Setup {
             id,
             extent,
             start,
             link,
         };
-        match kind {
-            PlannerKind::Bmilrv => kind
-                .build_among(&marks, setup)
-                .expect("the compiled size holds the world"),
-            _ => host.planner(kind, setup),
-        }
+        host.planner(kind, setup)
     });
     let medium = scenario.medium.build(
         scenario.sync,

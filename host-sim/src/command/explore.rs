@@ -70,7 +70,7 @@ pub(crate) struct Explore {
     #[arg(long)]
     solid: bool,
     /// Give up after this many ticks. Default: 1000 and 8 for each reachable
-    /// cell, for bmilrv 12 times that.
+    /// cell, for bmilrv 100.
     #[arg(long, value_name = "T")]
     max_ticks: Option<u32>,
     /// Folder for pictures, trace and summary. Default: out/ and the map's name.

@@ -70,7 +70,7 @@ impl World {
     pub(crate) fn run(self) -> Done {
         let world = Arc::new(world::World::read(&self.map, &ReadOptions::default())?);
         let starts = world.place(self.robots.into(), &world.default_starts(), false)?;
-        let max_ticks = default_max_ticks(&world.reachable(&starts));
+        let max_ticks = default_max_ticks(&world.reachable(&starts), PlannerKind::Explorer);
         let server = Server::open(WorldOptions {
             world,
             starts,

@@ -104,7 +104,7 @@ impl PlannerKind {
             }
             Self::Bmilrv => {
                 let marks = Marks::new(extent, start);
-                Box::new(Bmilrv::new(marks, id, extent, start)?)
+                Box::new(Bmilrv::new(marks, id, extent, start, link)?)
             }
         })
     }

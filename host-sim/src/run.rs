@@ -393,7 +393,7 @@ fn fleet_on<const TW: usize, const TH: usize>(
     };
     let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
         if let Some(marks) = &marks {
-            let robot = Bmilrv::new(marks.clone(), id, extent, start);
+            let robot = Bmilrv::new(marks.clone(), id, extent, start, link);
             return Box::new(robot.expect("the compiled size holds the world"));
         }
         let setup = Setup {

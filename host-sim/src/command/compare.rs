@@ -12,6 +12,7 @@ use host_sim::experiments::{
     Journal, Key, Metric, Place, Plan, Row, Shard, Site, compare, comparisons_csv, execute,
     markdown, to_csv, write_parquet,
 };
+use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
 use host_sim::world::{Family, ReadOptions, Recipe, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -46,6 +47,9 @@ pub(crate) struct Compare {
     /// Placings in each world.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     starts: u32,
+    /// What carries messages.
+    #[arg(long, value_name = "KIND", default_value = "ideal")]
+    medium: MediumKind,
     /// Ticks between two exchanges of maps; 0: never.
     #[arg(long, value_name = "D,…", value_delimiter = ',', default_value = "1")]
     sync: Vec<u32>,
@@ -173,6 +177,7 @@ impl Compare {
             robots: self.robots.clone(),
             place: self.place,
             starts: self.starts,
+            medium: self.medium,
             syncs: self.sync.clone(),
             losses: self.loss.clone(),
             ranges: self.range.clone(),

@@ -123,6 +123,7 @@ fn columns(rows: &[Row]) -> Vec<(&'static str, Column)> {
         ("robots", integer(|row| row.robots.into())),
         ("place", text(|row| row.place.to_string())),
         ("start", integer(|row| row.start.into())),
+        ("medium", text(|row| row.medium.to_string())),
         ("sync", integer(|row| row.sync.into())),
         ("loss", real(|row| row.loss)),
         ("range", integer(|row| row.range.into())),
@@ -145,6 +146,7 @@ fn columns(rows: &[Row]) -> Vec<(&'static str, Column)> {
         ("overlap", real(|row| row.overlap)),
         ("work_max", integer(|row| row.work_max.into())),
         ("work_mean", real(|row| row.work_mean)),
+        ("bytes", integer(|row| row.bytes as i64)),
         ("assignment_sum", cost(|row| row.assignment_sum)),
         ("assignment_max", cost(|row| row.assignment_max)),
     ]

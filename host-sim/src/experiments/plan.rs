@@ -8,6 +8,7 @@ use planner_core::Cell;
 use serde::{Deserialize, Serialize};
 
 use super::row::Key;
+use crate::medium::MediumKind;
 use crate::planners::PlannerKind;
 use crate::run::Scenario;
 use crate::world::{Recipe, Starts, World, WorldError};
@@ -25,6 +26,8 @@ pub struct Plan {
     pub place: Place,
     /// Placings in each world.
     pub starts: u32,
+    /// What carries messages.
+    pub medium: MediumKind,
     /// Ticks between two exchanges.
     pub syncs: Vec<u32>,
     /// Shares of messages lost.
@@ -74,6 +77,8 @@ pub struct Setup {
     pub place: Place,
     /// Which placing, from 0.
     pub start: u32,
+    /// What carries messages.
+    pub medium: MediumKind,
     /// Ticks between two exchanges.
     pub sync: u32,
     /// Share of messages lost.
@@ -106,6 +111,7 @@ impl Plan {
                                 robots,
                                 place: self.place,
                                 start,
+                                medium: self.medium,
                                 sync,
                                 loss,
                                 range,
@@ -178,6 +184,7 @@ impl Setup {
     pub fn scenario(&self, world: &Arc<World>) -> Result<Scenario, WorldError> {
         let mut scenario = Scenario::new(world.clone(), self.starts(world)?, self.planner);
         scenario.range = self.range;
+        scenario.medium = self.medium;
         scenario.sync = self.sync;
         scenario.loss = self.loss;
         scenario.seed = self.seed + u64::from(self.start);

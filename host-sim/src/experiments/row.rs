@@ -5,6 +5,7 @@ use planner_core::Extent;
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Place, Setup, Site};
+use crate::medium::MediumKind;
 use crate::planners::PlannerKind;
 use crate::run::Outcome;
 
@@ -30,6 +31,8 @@ pub struct Row {
     pub place: Place,
     /// Which placing, from 0.
     pub start: u32,
+    /// What carried messages.
+    pub medium: MediumKind,
     /// Ticks between two exchanges; 0: never.
     pub sync: u32,
     /// Share of messages lost, 0 to 1.
@@ -68,6 +71,8 @@ pub struct Row {
     pub work_max: u32,
     /// Mean work of a planner in a tick.
     pub work_mean: f64,
+    /// Bytes sent by all robots; the ideal medium counts none.
+    pub bytes: u64,
     /// Sum of costs of an assignment, on average over assignments
     /// [Bautin2011, criterion 1]. Costs are steps; `None` if the planner does
     /// not assign.
@@ -85,6 +90,7 @@ pub struct Key {
     robots: u8,
     place: Place,
     start: u32,
+    medium: MediumKind,
     sync: u32,
     loss: u64,
     range: u8,
@@ -102,6 +108,7 @@ impl Key {
             robots: setup.robots,
             place: setup.place,
             start: setup.start,
+            medium: setup.medium,
             sync: setup.sync,
             loss: setup.loss.to_bits(),
             range: setup.range,
@@ -177,6 +184,7 @@ impl Row {
             robots: setup.robots,
             place: setup.place,
             start: setup.start,
+            medium: setup.medium,
             sync: setup.sync,
             loss: setup.loss,
             range: setup.range,
@@ -201,6 +209,11 @@ impl Row {
             overlap: outcome.overlap(),
             work_max: outcome.max_work_per_tick,
             work_mean: work as f64 / (robots * f64::from(outcome.ticks.max(1))),
+            bytes: outcome
+                .robots
+                .iter()
+                .map(|robot| u64::from(robot.sent.bytes))
+                .sum(),
             assignment_sum: outcome.assignments.mean_sum(),
             assignment_max: outcome.assignments.mean_largest(),
         }
@@ -215,6 +228,7 @@ impl Row {
             robots: self.robots,
             place: self.place,
             start: self.start,
+            medium: self.medium,
             sync: self.sync,
             loss: self.loss.to_bits(),
             range: self.range,

@@ -5,6 +5,7 @@ use planner_core::Extent;
 
 use super::figures::{Effort, figures, measure, page};
 use super::*;
+use crate::medium::MediumKind;
 use crate::planners::PlannerKind::{Closest, Explorer, MinPos};
 use crate::world::{Family, ReadOptions, Recipe, World, paper};
 
@@ -17,6 +18,7 @@ fn plan() -> Plan {
         robots: vec![1, 3],
         place: Place::Random,
         starts: 2,
+        medium: MediumKind::Ideal,
         syncs: vec![1, 20],
         losses: vec![0.0, 0.5],
         ranges: vec![3],

@@ -4,6 +4,7 @@ mod air;
 mod ideal;
 mod radio;
 
+use std::fmt;
 use std::sync::Arc;
 
 use clap::ValueEnum;
@@ -32,6 +33,14 @@ pub enum MediumKind {
     Ideal,
     /// Frames of at most 55 bytes.
     Radio,
+}
+
+/// The name used on the command line, for example `radio`.
+impl fmt::Display for MediumKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.to_possible_value().expect("no medium is hidden");
+        f.write_str(value.get_name())
+    }
 }
 
 impl MediumKind {

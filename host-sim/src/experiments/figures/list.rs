@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::experiments::{Place, Plan, Site};
+use crate::medium::MediumKind;
 use crate::planners::PlannerKind::{
     self, Bmilrv, Closest, Explorer, Greedy, LocalFrontiers, LocalFrontiersSecondChance, MinPos,
 };
@@ -58,6 +59,7 @@ pub fn figures(effort: Effort, hospital: Option<Arc<World>>) -> Vec<Figure> {
         robots: vec![3],
         place,
         starts: effort.pick(2, 20),
+        medium: MediumKind::Ideal,
         syncs: vec![1],
         losses: vec![0.0],
         ranges: vec![5],

@@ -107,6 +107,14 @@ impl Board {
         }
     }
 
+    /// A robot begins, perhaps anew after it lost its memory; the time by which
+    /// it is to set its clock.
+    pub(super) fn enter(&mut self, robot: RobotId, cell: Cell) -> u32 {
+        self.forget(robot);
+        self.locate(robot, cell, self.now);
+        self.now
+    }
+
     /// A robot is somewhere, at a time of its own clock.
     pub(super) fn locate(&mut self, robot: RobotId, cell: Cell, time: u32) {
         self.now = self.now.max(time);

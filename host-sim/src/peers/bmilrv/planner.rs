@@ -58,15 +58,16 @@ impl<const TW: usize, const TH: usize> Bmilrv<TW, TH> {
         id: RobotId,
         extent: Extent,
         start: Cell,
+        config: LinkConfig,
     ) -> Result<Self, ExtentError> {
         let mut map = Box::new(Map::vacant());
         map.reset(extent)?;
         let mut link = Link::vacant();
-        link.reset(LinkConfig::new(), id, extent);
-        marks.lock().locate(id, start, 0);
+        link.reset(config, id, extent);
+        let now = marks.lock().enter(id, start);
         Ok(Self {
             marks,
-            robot: Robot::new(id, start, extent.cells() as usize),
+            robot: Robot::new(id, start, extent.cells() as usize, now),
             map,
             link,
             heading: None,

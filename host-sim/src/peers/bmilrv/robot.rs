@@ -60,7 +60,7 @@ pub(super) enum Decision {
 }
 
 impl Robot {
-    pub(super) fn new(id: RobotId, start: Cell, cells: usize) -> Self {
+    pub(super) fn new(id: RobotId, start: Cell, cells: usize, now: u32) -> Self {
         Self {
             id,
             position: start,
@@ -69,7 +69,7 @@ impl Robot {
             before: None,
             passes: vec![0; cells],
             view: Vec::new(),
-            time: 0,
+            time: now,
             work: 0,
         }
     }

@@ -1,6 +1,7 @@
 use std::sync::Arc;
 
-use planner_core::{Cell, Direction, Planner, RobotId};
+use planner_core::radio::LinkConfig;
+use planner_core::{Cell, Direction, RobotId};
 use proptest::prelude::*;
 
 use super::board::Mark;
@@ -24,9 +25,10 @@ impl Watched {
         let world = Arc::new(world);
         let starts = world.place(robots.into(), start, false).unwrap();
         let marks = Marks::new(world.extent(), starts[0]);
-        let (shared, extent) = (marks.clone(), world.extent());
-        let build = Box::new(move |id, start| -> Box<dyn Planner<8, 8>> {
-            Box::new(Bmilrv::new(shared.clone(), id, extent, start).unwrap())
+        let (board, extent) = (marks.clone(), world.extent());
+        let build = Box::new(move |id, start| {
+            let robot = Bmilrv::new(board.clone(), id, extent, start, LinkConfig::new());
+            Box::new(robot.unwrap()) as _
         });
         let rules = Rules {
             solid: false,

@@ -121,10 +121,7 @@ impl Extent {
 
     /// Whether `cell` lies on the grid.
     pub const fn contains(self, cell: Cell) -> bool {
-        cell.x >= 0
-            && cell.y >= 0
-            && (cell.x as u16) < self.width
-            && (cell.y as u16) < self.height
+        cell.x >= 0 && cell.y >= 0 && (cell.x as u16) < self.width && (cell.y as u16) < self.height
     }
 
     /// Number of cells.

@@ -5,6 +5,12 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod cao;
 mod cell;
+mod math;
+mod point;
+pub mod rng;
+pub mod surface;
 
 pub use cell::{Cell, Direction, Extent};
+pub use point::Point;

@@ -1,1 +1,3 @@
 //! The simulator around planner-core.
+
+pub mod survey;

@@ -7,10 +7,12 @@ extern crate std;
 
 pub mod cao;
 mod cell;
+pub mod fcao;
 mod math;
 mod point;
 pub mod rng;
 pub mod surface;
+pub mod survey;
 
 pub use cell::{Cell, Direction, Extent};
 pub use point::Point;

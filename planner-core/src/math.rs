@@ -29,3 +29,8 @@ pub(crate) fn floor(x: f32) -> f32 {
 pub(crate) fn length(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
+
+/// Angle of the vector `(x, y)` from the x axis, in `(-π, π]`; 0 for no vector.
+pub(crate) fn heading(x: f32, y: f32) -> f32 {
+    libm::atan2f(y, x)
+}

@@ -59,7 +59,7 @@ impl Model {
         degree: Degree,
         ridge: f32,
     ) -> Option<Self> {
-        if samples.is_empty() || !(ridge > 0.0) {
+        if samples.is_empty() || ridge.is_nan() || ridge <= 0.0 {
             return None;
         }
         // Rows without a sample stay zero: they add λ to the diagonal of K and

@@ -1,0 +1,67 @@
+//! Worlds of one height per column.
+
+use planner_core::{Cell, Extent};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+/// A height field; heights in cells.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Terrain {
+    extent: Extent,
+    heights: Vec<u8>,
+}
+
+impl Terrain {
+    /// A terrain of `extent` with the height that `height` gives for each column.
+    pub fn from_fn(extent: Extent, height: impl FnMut(Cell) -> u8) -> Self {
+        let heights = cells(extent).map(height).collect();
+        Self { extent, heights }
+    }
+
+    /// Eight Gaussian hills of equal width σ = 0.1·`side` and peaks of 4 to 14 cells
+    /// at places drawn by `seed` [Renzaglia2019 §5].
+    pub fn gaussian(seed: u64, side: u16) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut unit = || f64::from(rng.next_u32()) / f64::from(u32::MAX);
+        let hills: [(f64, f64, f64); 8] = std::array::from_fn(|_| {
+            (
+                unit() * f64::from(side),
+                unit() * f64::from(side),
+                4.0 + 10.0 * unit(),
+            )
+        });
+        let sigma = 0.1 * f64::from(side);
+        Self::from_fn(Extent::new(side, side), |cell| {
+            let height: f64 = hills
+                .iter()
+                .map(|(x, y, peak)| {
+                    let (dx, dy) = (f64::from(cell.x) + 0.5 - x, f64::from(cell.y) + 0.5 - y);
+                    peak * (-(dx * dx + dy * dy) / (2.0 * sigma * sigma)).exp()
+                })
+                .sum();
+            height.round() as u8
+        })
+    }
+
+    /// Size in columns.
+    pub fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Height of the ground at `cell`; `None` outside.
+    pub fn height(&self, cell: Cell) -> Option<u8> {
+        self.extent.contains(cell).then(|| {
+            self.heights[cell.y as usize * usize::from(self.extent.width) + cell.x as usize]
+        })
+    }
+
+    /// All columns, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
+        cells(self.extent)
+    }
+}
+
+fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
+    let (width, height) = (extent.width as i16, extent.height as i16);
+    (0..height).flat_map(move |y| (0..width).map(move |x| Cell::new(x, y)))
+}

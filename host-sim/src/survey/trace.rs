@@ -1,0 +1,95 @@
+//! What a run leaves behind.
+
+use planner_core::survey::Stop;
+use planner_core::{Cell, Extent, Point};
+
+/// One decision of one robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Record {
+    /// In which step.
+    pub step: u32,
+    /// Whose.
+    pub robot: u8,
+    /// Where the robot is after it.
+    pub at: Point,
+    /// The frontier that it announces.
+    pub target: Option<Cell>,
+    /// Whether it has stopped, and why.
+    pub stop: Option<Stop>,
+    /// Whether the flight controller refused the flight.
+    pub blocked: bool,
+    /// Work of the decision, as the planner counts it.
+    pub work: u32,
+}
+
+/// Steps at which something happened that never should.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Safety {
+    /// Flights below the least altitude or above the ceiling.
+    pub altitude_violations: u32,
+    /// Flights through the ground or out of the box.
+    pub obstacle_violations: u32,
+    /// Pairs of robots too near to each other.
+    pub separation_violations: u32,
+    /// Flights longer than a step.
+    pub step_violations: u32,
+}
+
+/// A whole run.
+#[derive(Clone, Debug)]
+pub struct Trace {
+    /// Size of the terrain.
+    pub extent: Extent,
+    /// Number of robots at the start.
+    pub robots: usize,
+    /// Every decision, in order.
+    pub records: Vec<Record>,
+    /// Columns that anybody had seen after each number of steps, from 0.
+    pub seen: Vec<u32>,
+    /// What should never happen.
+    pub safety: Safety,
+    /// Host time of each decision; not part of the digest.
+    pub decision_nanoseconds: Vec<u64>,
+}
+
+impl Trace {
+    pub(super) fn new(extent: Extent, robots: usize) -> Self {
+        Self {
+            extent,
+            robots,
+            records: Vec::new(),
+            seen: Vec::new(),
+            safety: Safety::default(),
+            decision_nanoseconds: Vec::new(),
+        }
+    }
+
+    /// Steps until `share` of all columns had been seen.
+    pub fn steps_to(&self, share: f64) -> Option<u32> {
+        let wanted = (share * f64::from(self.extent.cells())).ceil() as u32;
+        self.seen
+            .iter()
+            .position(|&seen| seen >= wanted)
+            .map(|step| step as u32)
+    }
+
+    /// A number that two runs share only if every decision is the same, bit for bit
+    /// (FNV-1a).
+    pub fn digest(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        let mut eat = |word: u32| {
+            for byte in word.to_le_bytes() {
+                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+            }
+        };
+        for record in &self.records {
+            eat(record.step);
+            eat(u32::from(record.robot));
+            for coordinate in [record.at.x, record.at.y, record.at.z] {
+                eat(coordinate.to_bits());
+            }
+            eat(u32::from(record.stop.is_some()) | u32::from(record.blocked) << 1);
+        }
+        hash
+    }
+}

@@ -48,7 +48,51 @@ fn main() {
             .flat_map(|t| &t.records)
             .filter(|r| r.blocked)
             .count();
-        let hover = 0;
+        let hover = {
+            let mut local = 0;
+            let mut n = 0;
+            let mut alt = 0.0;
+            let mut altf = 0.0;
+            let mut hov = 0;
+            let mut gains = [(0.0f32, 0); 4];
+            for (seed, t) in traces.iter().enumerate() {
+                let terrain = Terrain::gaussian(seed as u64, side);
+                let mut last = vec![None; robots];
+                let mut mode = vec![0; robots];
+                for r in &t.records {
+                    if r.stop.is_some() {
+                        continue;
+                    }
+                    n += 1;
+                    let a = r.at.z - terrain.height(r.at.cell()).unwrap().cells();
+                    if last[r.robot as usize] == Some(r.at) {
+                        hov += 1;
+                    }
+                    last[r.robot as usize] = Some(r.at);
+                    let m = mode[r.robot as usize];
+                    if r.step > 0 {
+                        gains[m].0 += r.gain;
+                        gains[m].1 += 1;
+                    }
+                    mode[r.robot as usize] =
+                        2 * usize::from(r.target.is_some()) + usize::from(r.step > 60);
+                    if r.target.is_none() {
+                        local += 1;
+                        alt += a;
+                    } else {
+                        altf += a;
+                    }
+                }
+            }
+            format!(
+                "local {:.2} alt {:.2}/{:.2} hover {:.3} gains {:?}",
+                local as f32 / n as f32,
+                alt / local as f32,
+                altf / (n - local) as f32,
+                hov as f32 / n as f32,
+                gains.map(|(g, n)| (g / n as f32, n))
+            )
+        };
         let decisions = traces.iter().map(|t| t.records.len()).sum::<usize>();
         let work = traces
             .iter()

@@ -223,6 +223,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             step: self.now,
             robot: i as u8,
             at,
+            gain: pilot.knowledge().gain(),
             target: status.target,
             stop: if let Action::Stop(stop) = action {
                 Some(stop)
@@ -298,7 +299,7 @@ fn start_positions(terrain: &Terrain, scenario: &Scenario) -> Vec<Point> {
                 planner_core::Cell::new(2 + 2 * (i % per_row) as i16, 2 + 2 * (i / per_row) as i16);
             Point::over(
                 place,
-                f32::from(terrain.height(place).unwrap_or(0)) + altitude,
+                terrain.height(place).unwrap_or_default().cells() + altitude,
             )
         })
         .collect()
@@ -316,7 +317,12 @@ fn pilot<const T: usize>(
         }
         Planner::Greedy => Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Centre)?)),
         Planner::Fcao | Planner::CoordinatedSurvey => {
-            let config = fcao::Config::new(limits, scenario.seed);
+            let mut config = fcao::Config::new(limits, scenario.seed);
+            if let Ok(t) = std::env::var("TUNE") {
+                for (i, v) in t.split(',').enumerate() {
+                    config.tune[i] = v.parse().unwrap();
+                }
+            }
             Pilot::Other(Box::new(Fcao::<T, T>::new(extent, config, id)?))
         }
     })

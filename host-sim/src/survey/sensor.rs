@@ -16,7 +16,7 @@ pub fn look(terrain: &Terrain, eye: Point, range: f32) -> Vec<Column> {
             let Some(height) = terrain.height(cell) else {
                 continue;
             };
-            let ground = Point::over(cell, f32::from(height));
+            let ground = Point::over(cell, height.cells());
             if eye.distance_squared(ground) <= range * range
                 && in_sight(eye, ground, |cell| terrain.height(cell))
             {

@@ -1,5 +1,6 @@
 //! Worlds of one height per column.
 
+use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -8,12 +9,12 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Terrain {
     extent: Extent,
-    heights: Vec<u8>,
+    heights: Vec<Height>,
 }
 
 impl Terrain {
     /// A terrain of `extent` with the height that `height` gives for each column.
-    pub fn from_fn(extent: Extent, height: impl FnMut(Cell) -> u8) -> Self {
+    pub fn from_fn(extent: Extent, height: impl FnMut(Cell) -> Height) -> Self {
         let heights = cells(extent).map(height).collect();
         Self { extent, heights }
     }
@@ -39,7 +40,7 @@ impl Terrain {
                     peak * (-(dx * dx + dy * dy) / (2.0 * sigma * sigma)).exp()
                 })
                 .sum();
-            height.round() as u8
+            Height::from_cells(height as f32)
         })
     }
 
@@ -49,7 +50,7 @@ impl Terrain {
     }
 
     /// Height of the ground at `cell`; `None` outside.
-    pub fn height(&self, cell: Cell) -> Option<u8> {
+    pub fn height(&self, cell: Cell) -> Option<Height> {
         self.extent.contains(cell).then(|| {
             self.heights[cell.y as usize * usize::from(self.extent.width) + cell.x as usize]
         })

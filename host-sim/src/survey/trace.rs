@@ -12,6 +12,8 @@ pub struct Record {
     pub robot: u8,
     /// Where the robot is after it.
     pub at: Point,
+    /// What the robot's last step added to its reward [Renzaglia2019 eq. 1].
+    pub gain: f32,
     /// The frontier that it announces.
     pub target: Option<Cell>,
     /// Whether it has stopped, and why.

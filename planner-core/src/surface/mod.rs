@@ -10,7 +10,7 @@
 mod segment;
 mod tile;
 
-pub use segment::{Columns, clearance, in_sight};
+pub use segment::{Columns, Crossing, clearance, in_sight};
 pub use tile::{Bits, SIDE, Tile};
 
 use core::fmt;
@@ -18,14 +18,35 @@ use core::fmt;
 use crate::cell::{Cell, Extent};
 use tile::neighbours_of;
 
+/// Height of the ground, in quarters of a cell: from 0 to 63.75 cells. Whole cells
+/// would be too coarse: each stair of a gentle slope would hide the ground below it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Height(pub u8);
+
+impl Height {
+    /// Steps of height in one cell.
+    pub const PER_CELL: u8 = 4;
+
+    /// In cells.
+    pub const fn cells(self) -> f32 {
+        self.0 as f32 * (1.0 / Self::PER_CELL as f32)
+    }
+
+    /// The nearest height to `cells`; 0 and 63.75 beyond the ends.
+    pub const fn from_cells(cells: f32) -> Self {
+        Self((cells * Self::PER_CELL as f32 + 0.5) as u8)
+    }
+}
+
 /// One column as a sensor gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Column {
     /// Where.
     pub cell: Cell,
-    /// Height of the ground, in cells.
-    pub height: u8,
+    /// Height of the ground.
+    pub height: Height,
 }
 
 /// Known columns of one tile: the unit in which maps travel.
@@ -36,7 +57,7 @@ pub struct Patch {
     /// Which of its columns.
     pub cells: u64,
     /// Their heights by bit number; the other entries mean nothing.
-    pub heights: [u8; 64],
+    pub heights: [Height; 64],
     /// Whether these columns became known to the sender in this very step by its own
     /// eyes: the receiver then shares the reward for them [Renzaglia2019 eq. 1].
     pub fresh: bool,
@@ -70,7 +91,7 @@ impl core::error::Error for TooLarge {}
 pub struct Surface<const TW: usize, const TH: usize> {
     extent: Extent,
     known: [[u64; TW]; TH],
-    heights: [[[u8; 64]; TW]; TH],
+    heights: [[[Height; 64]; TW]; TH],
     tile_frontiers: [[u8; TW]; TH],
     frontiers: u32,
     known_columns: u32,
@@ -87,7 +108,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         Ok(Self {
             extent,
             known: [[0; TW]; TH],
-            heights: [[[0; 64]; TW]; TH],
+            heights: [[[Height(0); 64]; TW]; TH],
             tile_frontiers: [[0; TW]; TH],
             frontiers: 0,
             known_columns: 0,
@@ -100,7 +121,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     }
 
     /// Height of the ground at `cell`, if known. Cost: one read.
-    pub fn height(&self, cell: Cell) -> Option<u8> {
+    pub fn height(&self, cell: Cell) -> Option<Height> {
         let tile = Tile::of(cell)?;
         let bit = Tile::bit(cell);
         if self.known(tile) >> bit & 1 == 0 {
@@ -177,7 +198,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         Patch {
             tile,
             cells: cells & self.known(tile),
-            heights: self.heights_of(tile).copied().unwrap_or([0; 64]),
+            heights: self.heights_of(tile).copied().unwrap_or([Height(0); 64]),
             fresh: false,
         }
     }
@@ -210,14 +231,14 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         new
     }
 
-    fn heights_of(&self, tile: Tile) -> Option<&[u8; 64]> {
+    fn heights_of(&self, tile: Tile) -> Option<&[Height; 64]> {
         self.heights
             .get(usize::from(tile.y))?
             .get(usize::from(tile.x))
     }
 
     /// The higher ground wins; an unknown column has height 0.
-    fn raise(&mut self, tile: Tile, bit: u32, height: u8) {
+    fn raise(&mut self, tile: Tile, bit: u32, height: Height) {
         if let Some(known) = self
             .heights
             .get_mut(usize::from(tile.y))

@@ -1,11 +1,22 @@
 //! Straight lines through columns: sight and flight in 3-D.
 
+use super::Height;
 use crate::cell::Cell;
 use crate::math;
 use crate::point::Point;
 
-/// The columns that a segment crosses, in order, each with the lowest height that
-/// the segment has in it. Yields 1 + |Δcolumn| + |Δrow| items.
+/// The part of a segment that lies in one column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The column.
+    pub cell: Cell,
+    /// z where the segment enters it.
+    pub entered: f32,
+    /// z where the segment leaves it.
+    pub left: f32,
+}
+
+/// The columns that a segment crosses, in order. Yields 1 + |Δcolumn| + |Δrow| items.
 // [Amanatides1987]
 #[derive(Clone, Debug)]
 pub struct Columns {
@@ -62,7 +73,7 @@ impl Columns {
 }
 
 impl Iterator for Columns {
-    type Item = (Cell, f32);
+    type Item = Crossing;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.done {
@@ -85,21 +96,28 @@ impl Iterator for Columns {
             self.cell.y = self.cell.y.saturating_add(self.step.1);
             height
         };
-        let low = self.entered.min(left);
-        self.entered = left;
-        Some((cell, low))
+        let entered = core::mem::replace(&mut self.entered, left);
+        Some(Crossing {
+            cell,
+            entered,
+            left,
+        })
     }
 }
 
 /// Whether `eye` sees the point `target`: whether the straight line between them
-/// stays on or above the ground that `height` gives. Ground that `height` does not
-/// know blocks.
+/// passes over the ground that `height` gives. A column's height is that of its
+/// centre, so the line is compared with it half-way through the column: on a slope
+/// the ground between two centres is not a stair. Ground that `height` does not know
+/// blocks.
 ///
 /// Cost: one call of `height` for each column crossed.
 // [Renzaglia2019 §3, O(s, P)]
-pub fn in_sight(eye: Point, target: Point, mut height: impl FnMut(Cell) -> Option<u8>) -> bool {
-    Columns::new(eye, target)
-        .all(|(cell, low)| height(cell).is_some_and(|ground| low >= f32::from(ground)))
+pub fn in_sight(eye: Point, target: Point, mut height: impl FnMut(Cell) -> Option<Height>) -> bool {
+    Columns::new(eye, target).all(|crossing| {
+        let middle = 0.5 * (crossing.entered + crossing.left);
+        height(crossing.cell).is_some_and(|ground| middle >= ground.cells())
+    })
 }
 
 /// The least height over ground along the straight line between two points, or
@@ -109,11 +127,12 @@ pub fn in_sight(eye: Point, target: Point, mut height: impl FnMut(Cell) -> Optio
 pub fn clearance(
     from: Point,
     to: Point,
-    mut height: impl FnMut(Cell) -> Option<u8>,
+    mut height: impl FnMut(Cell) -> Option<Height>,
 ) -> Option<f32> {
     let mut least = f32::INFINITY;
-    for (cell, low) in Columns::new(from, to) {
-        least = least.min(low - f32::from(height(cell)?));
+    for crossing in Columns::new(from, to) {
+        let low = crossing.entered.min(crossing.left);
+        least = least.min(low - height(crossing.cell)?.cells());
     }
     Some(least)
 }
@@ -134,10 +153,10 @@ mod tests {
         #[test]
         fn crosses_what_a_slow_walk_crosses(from in point(), to in point()) {
             let columns: Vec<_> = Columns::new(from, to).collect();
-            prop_assert_eq!(columns.first().unwrap().0, from.cell());
-            prop_assert_eq!(columns.last().unwrap().0, to.cell());
+            prop_assert_eq!(columns.first().unwrap().cell, from.cell());
+            prop_assert_eq!(columns.last().unwrap().cell, to.cell());
             for pair in columns.windows(2) {
-                prop_assert_eq!(pair[0].0.distance_squared(pair[1].0), 1);
+                prop_assert_eq!(pair[0].cell.distance_squared(pair[1].cell), 1);
             }
             let near_border = |v: f32| (v - math::floor(v + 0.5)).abs() < 1e-3;
             for i in 0..=10_000 {
@@ -154,7 +173,7 @@ mod tests {
 
     #[test]
     fn a_wall_hides_what_is_behind_it() {
-        let wall = |cell: Cell| Some(if cell.x == 3 { 5 } else { 0 });
+        let wall = |cell: Cell| Some(Height(if cell.x == 3 { 20 } else { 0 }));
         let eye = Point::new(0.5, 0.5, 3.0);
         assert!(in_sight(eye, Point::over(Cell::new(2, 0), 0.0), wall));
         assert!(!in_sight(eye, Point::over(Cell::new(5, 0), 0.0), wall));
@@ -168,7 +187,7 @@ mod tests {
 
     #[test]
     fn clearance_is_the_least_on_the_way() {
-        let hill = |cell: Cell| (cell.x < 9).then_some(if cell.x == 3 { 4 } else { 1 });
+        let hill = |cell: Cell| (cell.x < 9).then_some(Height(if cell.x == 3 { 16 } else { 4 }));
         let from = Point::new(0.5, 0.5, 6.0);
         assert_eq!(clearance(from, from.offset(5.0, 0.0, 0.0), hill), Some(2.0));
         assert_eq!(

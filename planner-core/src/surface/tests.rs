@@ -16,7 +16,7 @@ fn column() -> impl Strategy<Value = Column> {
 }
 
 /// The map as a plain table.
-fn table(columns: &[Column]) -> Vec<Vec<Option<u8>>> {
+fn table(columns: &[Column]) -> Vec<Vec<Option<Height>>> {
     let mut table = vec![vec![None; EXTENT.width.into()]; EXTENT.height.into()];
     for column in columns.iter().filter(|c| EXTENT.contains(c.cell)) {
         let entry = &mut table[column.cell.y as usize][column.cell.x as usize];

@@ -3,7 +3,7 @@
 use super::Knowledge;
 use crate::math;
 use crate::point::Point;
-use crate::surface::{Columns, clearance};
+use crate::surface::{Columns, Height, clearance};
 
 /// Headings that are tried beside the straight one, in radians.
 const TURNS: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6];
@@ -39,9 +39,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         let (sin, cos) = math::sin_cos(heading);
         let level = self.position.offset(length * cos, length * sin, 0.0);
         let ground = Columns::new(self.position, level)
-            .filter_map(|(cell, _)| self.surface.height(cell))
+            .filter_map(|crossing| self.surface.height(crossing.cell))
             .max()
-            .map_or(self.position.z, f32::from);
+            .map_or(self.position.z, Height::cells);
         let rise = (ground + cruise).min(self.limits.ceiling) - self.position.z;
         let whole = math::length(length, rise);
         let share = if whole > self.limits.step {

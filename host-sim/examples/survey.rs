@@ -11,15 +11,33 @@ fn main() {
     let side = number(3, 100.0) as u16;
     for name in args[0].split(',') {
         let planner = Planner::from_str(name, true).unwrap();
-        let traces: Vec<_> = (0..number(2, 100.0) as u64)
-            .into_par_iter()
-            .map(|seed| {
-                let mut scenario = Scenario::new(planner, robots, seed);
-                scenario.loss = number(4, 0.0);
-                scenario.skip = number(5, 0.0);
-                run(&Terrain::gaussian(seed, side), &scenario).unwrap()
-            })
-            .collect();
+        let traces: Vec<_> = {
+            let o: u64 = std::env::var("FIRST").map_or(0, |v| v.parse().unwrap());
+            (o..o + number(2, 100.0) as u64)
+        }
+        .into_par_iter()
+        .map(|seed| {
+            let mut scenario = Scenario::new(planner, robots, seed);
+            scenario.loss = number(4, 0.0);
+            scenario.skip = number(5, 0.0);
+            run(&Terrain::gaussian(seed, side), &scenario).unwrap()
+        })
+        .collect();
+        if let Ok(step) = std::env::var("DRAW") {
+            let worst = (0..traces.len())
+                .max_by_key(|&i| traces[i].seen.len())
+                .unwrap();
+            println!("worst {worst} {}", traces[worst].seen.len());
+            for i in [worst, 0] {
+                host_sim::survey::draw::top_view(
+                    &Terrain::gaussian(i as u64, side),
+                    &traces[i],
+                    step.parse().unwrap(),
+                )
+                .save(format!("/tmp/{name}-{i}.png"))
+                .unwrap();
+            }
+        }
         let column = |share: f64| {
             let steps: Vec<f64> = traces
                 .iter()
@@ -106,6 +124,18 @@ fn main() {
             .map(|r| r.work)
             .max()
             .unwrap();
+        if std::env::var("CURVE").is_ok() {
+            let c: Vec<u32> = (0..16)
+                .map(|k| {
+                    traces
+                        .iter()
+                        .map(|t| *t.seen.get(k * 8).unwrap_or(t.seen.last().unwrap()))
+                        .sum::<u32>()
+                        / traces.len() as u32
+                })
+                .collect();
+            println!("{c:?}");
+        }
         println!(
             "{name:20} 95% {:6.1}  99% {:6.1}  100% {all:6.1} ± {deviation:4.1}  missing {missing}  stopped {stopped:.1}  unsafe {safety:?} blocked {blocked}/{decisions} {hover} work {work:.0} max {worst}",
             column(0.95).0,

@@ -7,6 +7,7 @@ extern crate std;
 
 pub mod cao;
 mod cell;
+pub mod coordinated_survey;
 pub mod fcao;
 mod math;
 mod point;

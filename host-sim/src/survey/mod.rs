@@ -1,6 +1,8 @@
 //! Fleets of flying robots over unknown surfaces.
 
 pub mod baselines;
+pub mod draw;
+pub mod octree;
 mod run;
 mod scenario;
 mod sensor;

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use planner_core::coordinated_survey::{self, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Action, Motion, SetupError, Status, Surveyor};
@@ -75,8 +76,10 @@ struct Simulation<'a, const T: usize> {
 impl<'a, const T: usize> Simulation<'a, T> {
     fn new(terrain: &'a Terrain, scenario: &'a Scenario) -> Result<Self, SetupError> {
         let extent = terrain.extent();
-        let robots = start_positions(terrain, scenario)
-            .into_iter()
+        let starts = start_positions(terrain, scenario);
+        let robots = starts
+            .iter()
+            .copied()
             .enumerate()
             .map(|(id, at)| {
                 let pilot = pilot(extent, scenario, id as u8)?;
@@ -96,7 +99,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             union: Box::new(Surface::new(extent)?),
             faults: ChaCha8Rng::seed_from_u64(scenario.seed),
             now: 0,
-            trace: Trace::new(extent, scenario.robots),
+            trace: Trace::new(extent, starts),
         })
     }
 
@@ -316,7 +319,26 @@ fn pilot<const T: usize>(
             Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Closest)?))
         }
         Planner::Greedy => Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Centre)?)),
-        Planner::Fcao | Planner::CoordinatedSurvey => {
+        Planner::CoordinatedSurvey => {
+            let mut config = coordinated_survey::Config {
+                limits,
+                seed: scenario.seed,
+                tune: [
+                    0.1, 1.25, 0.4, 0.6, 1.0, 0.0, 0.6, 0.0, 10.0, 2.0, 2.0, 0.0, 1.5, 0.6, 1.5,
+                    0.2, 4.0, 0.85, 0.8, 0.5, 0.0, 0.0, 0.375, 0.0,
+                ],
+            };
+            if let Ok(t) = std::env::var("TUNE") {
+                for v in t.split(',') {
+                    let (k, v) = v.split_once(':').unwrap();
+                    config.tune[k.parse::<usize>().unwrap()] = v.parse().unwrap();
+                }
+            }
+            Pilot::Other(Box::new(CoordinatedSurvey::<T, T>::new(
+                extent, config, id,
+            )?))
+        }
+        Planner::Fcao => {
             let mut config = fcao::Config::new(limits, scenario.seed);
             if let Ok(t) = std::env::var("TUNE") {
                 for (i, v) in t.split(',').enumerate() {

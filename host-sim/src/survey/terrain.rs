@@ -56,6 +56,11 @@ impl Terrain {
         })
     }
 
+    /// Height of the highest ground.
+    pub fn highest(&self) -> Height {
+        self.heights.iter().copied().max().unwrap_or_default()
+    }
+
     /// All columns, row by row.
     pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
         cells(self.extent)

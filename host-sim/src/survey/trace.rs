@@ -44,6 +44,8 @@ pub struct Trace {
     pub extent: Extent,
     /// Number of robots at the start.
     pub robots: usize,
+    /// Where they started.
+    pub starts: Vec<Point>,
     /// Every decision, in order.
     pub records: Vec<Record>,
     /// Columns that anybody had seen after each number of steps, from 0.
@@ -55,10 +57,11 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub(super) fn new(extent: Extent, robots: usize) -> Self {
+    pub(super) fn new(extent: Extent, starts: Vec<Point>) -> Self {
         Self {
             extent,
-            robots,
+            robots: starts.len(),
+            starts,
             records: Vec::new(),
             seen: Vec::new(),
             safety: Safety::default(),
@@ -73,6 +76,23 @@ impl Trace {
             .iter()
             .position(|&seen| seen >= wanted)
             .map(|step| step as u32)
+    }
+
+    /// Where `robot` was, from the start until after `steps` steps.
+    pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
+        let start = self.starts.get(robot).copied();
+        let records = self
+            .records
+            .iter()
+            .filter(|record| usize::from(record.robot) == robot);
+        start
+            .into_iter()
+            .chain(
+                records
+                    .take_while(|record| record.step < steps)
+                    .map(|record| record.at),
+            )
+            .collect()
     }
 
     /// A number that two runs share only if every decision is the same, bit for bit

@@ -6,7 +6,7 @@
 
 mod history;
 
-use history::History;
+pub(crate) use history::History;
 
 use crate::cao::{Degree, Frame, Model};
 use crate::cell::{Cell, Extent};

@@ -1,0 +1,20 @@
+//! Pictures of a run, all from its trace.
+
+mod top;
+
+pub use top::top_view;
+
+use image::Rgb;
+
+/// Colours of the robots, in turn; distinguishable for most colour-blind readers.
+// [Okabe2008]
+pub(super) const ROBOT_COLOURS: [Rgb<u8>; 8] = [
+    Rgb([230, 159, 0]),
+    Rgb([86, 180, 233]),
+    Rgb([0, 158, 115]),
+    Rgb([240, 228, 66]),
+    Rgb([0, 114, 178]),
+    Rgb([213, 94, 0]),
+    Rgb([204, 121, 167]),
+    Rgb([120, 120, 120]),
+];

@@ -13,7 +13,7 @@ fn main() {
         let planner = Planner::from_str(name, true).unwrap();
         let traces: Vec<_> = {
             let o: u64 = std::env::var("FIRST").map_or(0, |v| v.parse().unwrap());
-            (o..o + number(2, 100.0) as u64)
+            o..o + number(2, 100.0) as u64
         }
         .into_par_iter()
         .map(|seed| {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use planner_core::coordinated_survey::{self, CoordinatedSurvey};
+use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Action, Motion, SetupError, Status, Surveyor};
@@ -319,32 +319,23 @@ fn pilot<const T: usize>(
             Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Closest)?))
         }
         Planner::Greedy => Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Centre)?)),
-        Planner::CoordinatedSurvey => {
-            let mut config = coordinated_survey::Config {
-                limits,
-                seed: scenario.seed,
-                tune: [
-                    0.1, 1.25, 0.4, 0.6, 1.0, 0.0, 0.6, 0.0, 10.0, 2.0, 2.0, 0.0, 1.5, 0.6, 1.5,
-                    0.2, 4.0, 0.85, 0.8, 0.5, 0.0, 0.0, 0.375, 0.0,
-                ],
+        Planner::CoordinatedSurvey | Planner::CoordinatedCubic => {
+            let choice = if scenario.planner == Planner::CoordinatedCubic {
+                Choice::Cubic
+            } else {
+                Choice::Map
             };
-            if let Ok(t) = std::env::var("TUNE") {
-                for v in t.split(',') {
-                    let (k, v) = v.split_once(':').unwrap();
-                    config.tune[k.parse::<usize>().unwrap()] = v.parse().unwrap();
-                }
-            }
+            let config = coordinated_survey::Config {
+                limits,
+                choice,
+                seed: scenario.seed,
+            };
             Pilot::Other(Box::new(CoordinatedSurvey::<T, T>::new(
                 extent, config, id,
             )?))
         }
         Planner::Fcao => {
-            let mut config = fcao::Config::new(limits, scenario.seed);
-            if let Ok(t) = std::env::var("TUNE") {
-                for (i, v) in t.split(',').enumerate() {
-                    config.tune[i] = v.parse().unwrap();
-                }
-            }
+            let config = fcao::Config::new(limits, scenario.seed);
             Pilot::Other(Box::new(Fcao::<T, T>::new(extent, config, id)?))
         }
     })

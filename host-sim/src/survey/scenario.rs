@@ -6,8 +6,10 @@ use planner_core::survey::Limits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Planner {
-    /// Pockets, a local choice by CAO, coordinated frontiers: the best.
+    /// Pockets, a local choice on the map, coordinated frontiers: the best.
     CoordinatedSurvey,
+    /// The same, its local choice by CAO's cubic.
+    CoordinatedCubic,
     /// FCAO as published.
     Fcao,
     /// Every robot to the closest frontier.

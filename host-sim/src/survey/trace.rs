@@ -78,6 +78,11 @@ impl Trace {
             .map(|step| step as u32)
     }
 
+    /// Whether all columns had been seen at the end.
+    pub fn complete(&self) -> bool {
+        self.steps_to(1.0).is_some()
+    }
+
     /// Where `robot` was, from the start until after `steps` steps.
     pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
         let start = self.starts.get(robot).copied();

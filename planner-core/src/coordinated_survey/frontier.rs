@@ -15,14 +15,14 @@ const SHORTLIST: usize = 4;
 const RANK: f32 = 10.0;
 
 /// Worth of a neighbourhood that is all unknown.
-const OPENNESS: f32 = 2.0;
+const OPENNESS: f32 = 4.5;
 
 /// Radius of that neighbourhood, as a share of the range.
 const NEIGHBOURHOOD: f32 = 0.6;
 
 /// Cost of a place that a rival announced, falling off over [`SPREAD`] ranges.
 const ANNOUNCED: f32 = 2.0;
-const SPREAD: f32 = 1.5;
+const SPREAD: f32 = 1.0;
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// The frontier with the lowest score.
@@ -54,7 +54,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 work += 16;
                 let cell = tile.cell(bit);
                 let at = Point::over(cell, 0.0);
-                let score = self.score(at, self.openness(at, self.config.tune[13] * range));
+                let score = self.score(at, self.openness(at, NEIGHBOURHOOD * range));
                 if best.is_none_or(|(least, _)| score < least) {
                     best = Some((score, cell));
                 }
@@ -73,12 +73,10 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 rank += 1.0;
             }
             if let Some(target) = peer.status.target {
-                let away =
-                    Point::over(target, 0.0).plan_distance(at) / (self.config.tune[14] * range);
+                let away = Point::over(target, 0.0).plan_distance(at) / (SPREAD * range);
                 announced += math::exp(-0.5 * away * away);
             }
         }
-        distance / range + self.config.tune[8] * rank - self.config.tune[9] * openness
-            + self.config.tune[10] * announced
+        distance / range + RANK * rank - OPENNESS * openness + ANNOUNCED * announced
     }
 }

@@ -26,7 +26,18 @@ const HISTORY: usize = 8;
 
 /// Half of a robot's swath is lost at its edges if it flies higher than this share
 /// of its range over ground.
-const CRUISE: f32 = 3.0 / 8.0;
+const CRUISE: f32 = 0.36;
+
+/// How a robot chooses among random local steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// Each candidate is judged on the map: the best, where words are counted fast.
+    #[default]
+    Map,
+    /// Eight probes are judged on the map, and CAO's cubic through them and the past
+    /// judges the candidates: a third of the work, a few per cent slower surveys.
+    Cubic,
+}
 
 /// What a fleet agrees on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +46,8 @@ pub struct Config {
     pub limits: Limits,
     /// Seed of the fleet's random headings.
     pub seed: u64,
-    pub tune: [f32; 24],
+    /// How the local step is chosen.
+    pub choice: Choice,
 }
 
 /// The planner of one robot, over a map of `TW`×`TH` tiles.
@@ -48,6 +60,7 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     rescue: Rescue<TW, TH>,
     target: Option<Cell>,
     stopped: bool,
+    /// Whether the last step was a local one.
     local: bool,
     work: u32,
 }
@@ -75,7 +88,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             min_altitude,
             ..
         } = self.config.limits;
-        min_altitude.max(self.config.tune[22] * range)
+        min_altitude.max(CRUISE * range)
     }
 
     fn look_at(&mut self, number: u32) {
@@ -154,11 +167,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
         {
             return action;
         }
-        let floor = self.config.tune[21] * 2.0 * self.config.limits.range * self.config.limits.step;
-        let stale = self.local && gain < floor;
-        self.local = false;
-        if !stale && let Some(to) = self.best_swath() {
-            self.local = true;
+        if let Some(to) = self.best_swath(gain) {
             self.target = None;
             return Action::Fly(to);
         }

@@ -7,10 +7,10 @@ use crate::point::Point;
 use crate::surface::{Bits, Tile};
 
 /// Frontiers farther away than this share of the range are left for later.
-const REACH: f32 = 1.5;
+const REACH: f32 = 1.28;
 
 /// A frontier with less than this share unknown around it is a pocket's.
-const OPENNESS: f32 = 0.10;
+const OPENNESS: f32 = 0.18;
 
 /// Radius of the disc around a frontier that is looked at, as a share of the range.
 const NEIGHBOURHOOD: f32 = 1.25;
@@ -26,13 +26,13 @@ const GOLDEN_ANGLE: f32 = 2.399_96;
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// The nearest frontier that belongs to a pocket and that no rival is nearer to.
     ///
-    /// Cost: the frontiers within 1.5 R, each with 16 samples at most.
+    /// Cost: the frontiers within 1.28 R, each with 16 samples at most.
     pub(super) fn nearest_pocket(&mut self) -> Option<Cell> {
         let here = self.knowledge.position();
         let range = self.config.limits.range;
         let mut best: Option<(f32, Cell)> = None;
         let mut work = 0;
-        for tile in tiles_within(here, self.config.tune[12] * range) {
+        for tile in tiles_within(here, REACH * range) {
             work += 1;
             if self.knowledge.surface().frontiers_in(tile) == 0 {
                 continue;
@@ -42,7 +42,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 let cell = tile.cell(bit);
                 let at = Point::over(cell, 0.0);
                 let distance = here.plan_distance(at);
-                let most = best.map_or(self.config.tune[12] * range, |(least, _)| least);
+                let most = best.map_or(REACH * range, |(least, _)| least);
                 if distance > most {
                     continue;
                 }
@@ -54,7 +54,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                     continue;
                 }
                 work += u32::from(SAMPLES);
-                if self.openness(at, self.config.tune[1] * range) < self.config.tune[0] {
+                if self.openness(at, NEIGHBOURHOOD * range) < OPENNESS {
                     best = Some((distance, cell));
                 }
             }

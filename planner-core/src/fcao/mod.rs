@@ -35,7 +35,6 @@ pub struct Config {
     pub degree: Degree,
     /// Number M of random candidates in each step; 50 to 100 is plenty.
     pub candidates: u16,
-    pub tune: [f32; 8],
     /// Seed of the fleet's random candidates.
     pub seed: u64,
 }
@@ -47,7 +46,6 @@ impl Config {
             limits,
             degree: Degree::Cubic,
             candidates: 100,
-            tune: [0.4, 0.5, 1e-4, 0.0, 0.0, 0.0, 0.0, 0.0],
             seed,
         }
     }
@@ -85,7 +83,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     /// Gain of a step that is too little to go on locally.
     fn least_gain(&self) -> f32 {
-        self.config.tune[0] * 2.0 * self.config.limits.range * self.config.limits.step
+        LOCAL_OPTIMUM * 2.0 * self.config.limits.range * self.config.limits.step
     }
 
     /// CAO's step: the best of the random candidates by the local model, or `None`
@@ -126,7 +124,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             origin: here,
             scale: 1.0 / reach,
         };
-        let ridge = self.config.tune[2] * self.history.len() as f32;
+        let ridge = RIDGE * self.history.len() as f32;
         Model::fit::<H>(
             self.history.centred().as_slice(),
             frame,
@@ -140,16 +138,6 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         self.work = self.work.saturating_add(1);
         let (x, y, z) = self.rng.direction();
         let step = self.config.limits.step;
-        if self.config.tune[3] > 0.5 {
-            let l = (x * x + y * y).max(1e-6);
-            let l = crate::math::sqrt(l);
-            return self.knowledge.step_along(
-                crate::math::heading(x, y),
-                step,
-                self.config.tune[4] * self.config.limits.range,
-            );
-            let _ = l;
-        }
         here.offset(step * x, step * y, step * z)
     }
 
@@ -197,7 +185,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             .and_then(|target| {
                 let goal = Point::over(target, 0.0);
                 self.knowledge
-                    .step_towards(goal, min_altitude.max(range * self.config.tune[1]))
+                    .step_towards(goal, min_altitude.max(range / 2.0))
             })
             .map_or(Action::Hover, Action::Fly)
     }
@@ -245,11 +233,6 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
             self.stopped = matches!(action, Action::Stop(_));
             return action;
         }
-        let gain = if self.config.tune[6] > 0.5 {
-            self.knowledge.raw_gain()
-        } else {
-            gain
-        };
         if gain > self.least_gain() {
             self.target = None;
             if let Some(action) = self.optimise() {

@@ -113,9 +113,6 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.gain
     }
 
-    pub fn raw_gain(&self) -> f32 {
-        self.news.tiles(0).map(|(_, w)| w.count_ones()).sum::<u32>() as f32
-    }
     /// Steps in a row without any gain.
     pub const fn idle(&self) -> u16 {
         self.idle

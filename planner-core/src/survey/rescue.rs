@@ -64,7 +64,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             self.target = target;
             self.patience = target.map_or(0, |cell| {
                 let steps = here.plan_distance(Point::over(cell, 0.0)) / knowledge.limits().step;
-                (4.0 * steps) as u16 + 20
+                ((4.0 * steps) as u16).saturating_add(20)
             });
         }
         let Some(target) = self.target else {

@@ -3,7 +3,7 @@
 use host_sim::survey::{Kill, Planner, Scenario, Terrain, look, run};
 use planner_core::surface::Height;
 use planner_core::survey::Stop;
-use planner_core::{Cell, Extent, Point};
+use planner_core::{Cell, Direction, Extent, Point};
 use proptest::prelude::*;
 
 const ALL: [Planner; 5] = [
@@ -115,53 +115,62 @@ fn a_robot_fits_into_24_kib() {
     assert!(size_of::<CoordinatedSurvey<13, 13>>() <= 24 * 1024);
 }
 
-/// Everything that can be seen from somewhere over columns that can be seen, by trying
-/// nine places in each column at many heights, again and again.
+/// Everything that can be seen from just inside the edges of seen columns that border
+/// unseen ones, from low to high in steps, again and again until nothing is new.
 fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
     let limits = scenario.limits;
     let mut seen: Vec<Cell> = look(terrain, start, limits.range)
         .iter()
         .map(|c| c.cell)
         .collect();
-    let mut next = 0;
-    while let Some(&cell) = seen.get(next) {
-        next += 1;
-        let ground = terrain.height(cell).unwrap().cells();
-        for place in 0..9 {
-            let (dx, dy) = (
-                0.45 * f32::from(place % 3 - 1i8),
-                0.45 * f32::from(place / 3 - 1i8),
-            );
-            let mut z = ground + limits.min_altitude + 0.1;
-            while z <= limits.ceiling {
-                for column in look(
-                    terrain,
-                    Point::over(cell, z).offset(dx, dy, 0.0),
-                    limits.range,
-                ) {
-                    if !seen.contains(&column.cell) {
-                        seen.push(column.cell);
-                    }
+    loop {
+        let before = seen.len();
+        for i in 0..before {
+            let cell = seen[i];
+            for direction in Direction::ALL {
+                let beyond = cell.step(direction);
+                if !terrain.extent().contains(beyond) || seen.contains(&beyond) {
+                    continue;
                 }
-                z += 1.0;
+                let (dx, dy) = direction.delta();
+                let ground = terrain.height(cell).unwrap().cells();
+                let mut z = ground + limits.min_altitude + 0.1;
+                while z <= limits.ceiling {
+                    let eye = Point::over(cell, z).offset(
+                        0.45 * f32::from(dx),
+                        0.45 * f32::from(dy),
+                        0.0,
+                    );
+                    let new = look(terrain, eye, limits.range);
+                    seen.extend(
+                        new.iter()
+                            .map(|c| c.cell)
+                            .filter(|c| !seen.contains(c))
+                            .collect::<Vec<_>>(),
+                    );
+                    z += limits.step;
+                }
             }
         }
+        if seen.len() == before {
+            return seen;
+        }
     }
-    seen
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// On small terrains of blocks and cliffs, everything that can be seen is.
+    /// On small terrains of blocks and cliffs, everything that can be seen from beside
+    /// what is known is seen.
     #[test]
     fn all_that_can_be_seen_is_seen(
-        heights in prop::collection::vec(prop_oneof![3 => Just(0u8), 1 => 0u8..32], 36),
+        heights in prop::collection::vec(prop_oneof![3 => Just(0u8), 1 => 0u8..32], 25),
         planner in prop::sample::select(&OWN[..]),
         seed in 0u64..1000,
     ) {
-        let terrain = Terrain::from_fn(Extent::new(18, 18), |cell| {
-            Height(heights[(cell.y / 3 * 6 + cell.x / 3) as usize])
+        let terrain = Terrain::from_fn(Extent::new(15, 15), |cell| {
+            Height(heights[(cell.y / 3 * 5 + cell.x / 3) as usize])
         });
         let mut scenario = Scenario::new(planner, 2, seed);
         scenario.limits.ceiling = 20.0;

@@ -1,9 +1,11 @@
-//! The way out for a robot that has gained nothing for a long time: it flies low to
-//! the edge of one frontier after the other, and stops when all of them are done.
+//! The way out for a robot that has gained nothing for a long time: it flies to the
+//! edge of one frontier after the other, looks over it from low to high, and stops
+//! when all of them are done.
 //!
 //! The rules of the planners are heuristics; this one is what makes a survey
-//! complete. It looks over the edge between a frontier and the unknown column beside
-//! it from just above the least altitude, from where even a deep drop shows.
+//! complete. Just above the least altitude and just before the unknown column even a
+//! deep drop shows; from there the robot climbs to the ceiling, and a tower's top
+//! shows.
 
 use super::{Action, Knowledge, Stop};
 use crate::cell::{Cell, Direction};
@@ -16,13 +18,17 @@ pub const PATIENCE: u16 = 50;
 /// Height over the least altitude at which it flies.
 const MARGIN: f32 = 0.1;
 
-/// Which frontiers have been looked over since the map last grew.
+/// Which frontiers have been looked over since the map last grew, and the one that is.
 #[derive(Clone, Debug)]
 pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     tried: [[u64; TW]; TH],
     known_columns: u32,
     target: Option<Cell>,
-    /// Steps left for the target.
+    /// Which of the target's four edges is looked over.
+    edge: u8,
+    /// Whether the robot is there and climbs.
+    climbing: bool,
+    /// Steps left to get there.
     patience: u16,
     pub(crate) work: u32,
 }
@@ -33,6 +39,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             tried: [[0; TW]; TH],
             known_columns: 0,
             target: None,
+            edge: 0,
+            climbing: false,
             patience: 0,
             work: 0,
         }
@@ -45,44 +53,60 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
 
     /// One step of the rescue.
     ///
-    /// Cost: a [`Knowledge::closest_frontier`] when a target is done, and at most 29
+    /// Cost: a [`Knowledge::closest_frontier`] when a target is done, and at most 30
     /// flights looked at.
     pub(crate) fn tick(&mut self, knowledge: &Knowledge<TW, TH>) -> Action {
         let surface = knowledge.surface();
-        self.work = 0;
+        self.work = 30;
         if self.known_columns != surface.known_columns() {
             self.known_columns = surface.known_columns();
             self.tried = [[0; TW]; TH];
         }
-        let here = knowledge.position();
         if !self
             .target
             .is_some_and(|target| surface.is_frontier(target))
         {
+            let here = knowledge.position();
             let (target, work) = knowledge.closest_frontier(here, |cell| !self.was_tried(cell));
-            self.work = work;
+            self.work = self.work.saturating_add(work);
             self.target = target;
-            self.patience = target.map_or(0, |cell| {
-                let steps = here.plan_distance(Point::over(cell, 0.0)) / knowledge.limits().step;
-                ((4.0 * steps) as u16).saturating_add(20)
-            });
+            self.begin(knowledge, 0);
         }
         let Some(target) = self.target else {
             return Action::Stop(Stop::Unseen {
                 frontiers: surface.frontiers(),
             });
         };
-        self.work = self.work.saturating_add(29);
-        self.patience = self.patience.saturating_sub(1);
-        let cruise = knowledge.limits().min_altitude + MARGIN;
-        match knowledge.step_towards(edge_of(knowledge, target), cruise) {
-            Some(to) if self.patience > 0 => Action::Fly(to),
-            _ => {
-                self.mark_tried(target);
-                self.target = None;
-                Action::Hover
+        let Some((edge, place)) = edge_of(knowledge, target, self.edge) else {
+            self.mark_tried(target);
+            self.target = None;
+            return Action::Hover;
+        };
+        self.edge = edge;
+        if !self.climbing {
+            self.patience = self.patience.saturating_sub(1);
+            let cruise = knowledge.limits().min_altitude + MARGIN;
+            match knowledge.step_towards(place, cruise) {
+                Some(to) if self.patience > 0 => return Action::Fly(to),
+                _ => self.climbing = true,
             }
         }
+        let up = knowledge.climb();
+        if up.z > knowledge.position().z && knowledge.may_fly(up) {
+            return Action::Fly(up);
+        }
+        self.begin(knowledge, edge.saturating_add(1));
+        Action::Hover
+    }
+
+    /// Sets out for the target's edge number `edge`.
+    fn begin(&mut self, knowledge: &Knowledge<TW, TH>, edge: u8) {
+        self.edge = edge;
+        self.climbing = false;
+        self.patience = self.target.map_or(0, |cell| {
+            let way = knowledge.position().plan_distance(Point::over(cell, 0.0));
+            ((4.0 * way / knowledge.limits().step) as u16).saturating_add(20)
+        });
     }
 
     fn was_tried(&self, cell: Cell) -> bool {
@@ -105,14 +129,23 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 }
 
-/// The place over `frontier`, just inside its border with an unknown column.
+/// The first edge of `frontier`, from number `first` on, that borders an unknown
+/// column, and the place just inside it.
 fn edge_of<const TW: usize, const TH: usize>(
     knowledge: &Knowledge<TW, TH>,
     frontier: Cell,
-) -> Point {
-    let (dx, dy) = Direction::ALL
-        .into_iter()
-        .find(|&direction| knowledge.surface().is_unknown(frontier.step(direction)))
-        .map_or((0, 0), Direction::delta);
-    Point::over(frontier, 0.0).offset(0.45 * f32::from(dx), 0.45 * f32::from(dy), 0.0)
+    first: u8,
+) -> Option<(u8, Point)> {
+    (0u8..)
+        .zip(Direction::ALL)
+        .skip(usize::from(first))
+        .find(|&(_, direction)| knowledge.surface().is_unknown(frontier.step(direction)))
+        .map(|(number, direction)| {
+            let (dx, dy) = direction.delta();
+            let centre = Point::over(frontier, 0.0);
+            (
+                number,
+                centre.offset(0.45 * f32::from(dx), 0.45 * f32::from(dy), 0.0),
+            )
+        })
 }

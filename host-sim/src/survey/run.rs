@@ -122,6 +122,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             .robots
             .iter()
             .any(|robot| robot.alive && !robot.stopped);
+        self.trace.all_stopped = !going;
         if !going || self.now >= self.scenario.max_steps {
             return false;
         }
@@ -140,7 +141,9 @@ impl<'a, const T: usize> Simulation<'a, T> {
         for robot in self.robots.iter_mut().filter(|robot| robot.awake) {
             let columns = look(self.terrain, robot.at, self.scenario.limits.range);
             for &column in &columns {
-                self.union.learn(column);
+                if self.union.learn(column) {
+                    self.trace.found.push((self.now, column));
+                }
             }
             robot.pilot.get_mut().observe(robot.at, &columns);
         }

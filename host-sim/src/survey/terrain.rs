@@ -44,6 +44,53 @@ impl Terrain {
         })
     }
 
+    /// A town: streets every 20 cells, on each block a building of 5 to 16 cells or a
+    /// yard, and vehicles along the streets.
+    pub fn urban(seed: u64, side: u16) -> Self {
+        /// Width of a block with its street, and of the street.
+        const BLOCK: i16 = 20;
+        const STREET: i16 = 8;
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let blocks = side as usize / BLOCK as usize + 1;
+        let buildings: Vec<u8> = (0..blocks * blocks)
+            .map(|_| {
+                if rng.next_u32() % 5 == 0 {
+                    0
+                } else {
+                    20 + (rng.next_u32() % 45) as u8
+                }
+            })
+            .collect();
+        // North-west corner and size of each vehicle, parked along a kerb.
+        let vehicles: Vec<(i16, i16, i16, i16)> = (0..blocks * blocks)
+            .map(|block| {
+                let along = STREET + (rng.next_u32() % 8) as i16;
+                let (x, y) = (
+                    (block % blocks) as i16 * BLOCK,
+                    (block / blocks) as i16 * BLOCK,
+                );
+                if rng.next_u32() % 2 == 0 {
+                    (x + 5, y + along, 2, 4)
+                } else {
+                    (x + along, y + 5, 4, 2)
+                }
+            })
+            .collect();
+        Self::from_fn(Extent::new(side, side), |cell| {
+            let parked = vehicles.iter().any(|&(x, y, width, length)| {
+                (x..x + width).contains(&cell.x) && (y..y + length).contains(&cell.y)
+            });
+            let block =
+                cell.y as usize / BLOCK as usize * blocks + cell.x as usize / BLOCK as usize;
+            let on_street = cell.x % BLOCK < STREET || cell.y % BLOCK < STREET;
+            match (on_street, parked) {
+                (true, true) => Height(6),
+                (true, false) => Height(0),
+                (false, _) => Height(buildings[block]),
+            }
+        })
+    }
+
     /// Size in columns.
     pub fn extent(&self) -> Extent {
         self.extent

@@ -1,5 +1,6 @@
 //! What a run leaves behind.
 
+use planner_core::surface::Column;
 use planner_core::survey::Stop;
 use planner_core::{Cell, Extent, Point};
 
@@ -50,6 +51,10 @@ pub struct Trace {
     pub records: Vec<Record>,
     /// Columns that anybody had seen after each number of steps, from 0.
     pub seen: Vec<u32>,
+    /// The columns in the order in which they were seen, each with the step.
+    pub found: Vec<(u32, Column)>,
+    /// Whether the run ended because every living robot had stopped.
+    pub all_stopped: bool,
     /// What should never happen.
     pub safety: Safety,
     /// Host time of each decision; not part of the digest.
@@ -64,6 +69,8 @@ impl Trace {
             starts,
             records: Vec::new(),
             seen: Vec::new(),
+            found: Vec::new(),
+            all_stopped: false,
             safety: Safety::default(),
             decision_nanoseconds: Vec::new(),
         }
@@ -83,6 +90,19 @@ impl Trace {
         self.steps_to(1.0).is_some()
     }
 
+    /// The columns that anybody had seen after `steps` steps.
+    pub fn mapped(&self, steps: u32) -> impl Iterator<Item = Column> + '_ {
+        self.found
+            .iter()
+            .take_while(move |(step, _)| *step <= steps)
+            .map(|(_, column)| *column)
+    }
+
+    /// Steps until the last living robot had stopped, if all have.
+    pub fn steps_to_stopped(&self) -> Option<u32> {
+        self.all_stopped.then(|| self.seen.len() as u32 - 1)
+    }
+
     /// Where `robot` was, from the start until after `steps` steps.
     pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
         let start = self.starts.get(robot).copied();
@@ -98,6 +118,30 @@ impl Trace {
                     .map(|record| record.at),
             )
             .collect()
+    }
+
+    /// One line for each decision, positions in cells.
+    pub fn write_csv(&self, mut to: impl std::io::Write) -> std::io::Result<()> {
+        writeln!(to, "step,robot,x,y,z,gain,work,refused,stopped")?;
+        for record in &self.records {
+            let Record {
+                step,
+                robot,
+                at,
+                gain,
+                work,
+                blocked,
+                stop,
+                ..
+            } = record;
+            let stopped = stop.is_some();
+            writeln!(
+                to,
+                "{step},{robot},{},{},{},{gain},{work},{blocked},{stopped}",
+                at.x, at.y, at.z
+            )?;
+        }
+        Ok(())
     }
 
     /// A number that two runs share only if every decision is the same, bit for bit

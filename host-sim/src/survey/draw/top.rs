@@ -1,28 +1,33 @@
 //! The view from above: heights as shades, ways as lines.
 
 use image::{Rgb, RgbImage};
-use planner_core::{Cell, Point};
+use planner_core::Point;
 
-use super::ROBOT_COLOURS;
+use super::{ROBOT_COLOURS, shade};
 use crate::survey::{Terrain, Trace};
 
 /// Pixels of a cell's side.
 const SCALE: u32 = 6;
 
-/// The terrain from above, light where it is high, with the way of each robot up to
-/// `step` steps, a ring where it started and a disc where it is.
+/// What had been mapped after `step` steps, light where it is high, with the way of each robot flown
+/// until then, a ring where it started and a disc where it is.
 pub fn top_view(terrain: &Terrain, trace: &Trace, step: u32) -> RgbImage {
     let extent = terrain.extent();
-    let highest = terrain.highest().cells().max(1.0);
-    let mut picture = RgbImage::from_fn(
+    let mut picture = RgbImage::from_pixel(
         u32::from(extent.width) * SCALE,
         u32::from(extent.height) * SCALE,
-        |x, y| {
-            let cell = Cell::new((x / SCALE) as i16, (y / SCALE) as i16);
-            let share = terrain.height(cell).unwrap_or_default().cells() / highest;
-            Rgb([70.0, 78.0, 84.0].map(|dark| (dark + share * 165.0) as u8))
-        },
+        Rgb([24, 26, 30]),
     );
+    let highest = terrain.highest().cells();
+    for column in trace.mapped(step) {
+        let colour = shade(column.height.cells(), highest);
+        for dy in 0..SCALE {
+            for dx in 0..SCALE {
+                let x = column.cell.x as u32 * SCALE + dx;
+                picture.put_pixel(x, column.cell.y as u32 * SCALE + dy, colour);
+            }
+        }
+    }
     for robot in 0..trace.robots {
         let colour = ROBOT_COLOURS[robot % ROBOT_COLOURS.len()];
         let way = trace.way(robot, step);

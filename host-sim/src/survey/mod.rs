@@ -3,6 +3,7 @@
 mod args;
 pub mod baselines;
 pub mod draw;
+mod figures;
 mod mapped;
 pub mod octree;
 mod run;
@@ -13,6 +14,7 @@ mod terrain_source;
 mod trace;
 
 pub use args::{Summary, SurveyArgs};
+pub use figures::figures;
 pub use mapped::octree;
 pub use run::run;
 pub use scenario::{Kill, Planner, Scenario};

@@ -18,7 +18,7 @@ use crate::survey::{
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
-const LOCAL_OPTIMUM: f32 = 0.4;
+const LOCAL_OPTIMUM: f32 = 0.5;
 
 /// Reading: ridge of the fit, per measurement.
 const RIDGE: f32 = 1e-4;

@@ -159,7 +159,7 @@ fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// On small terrains of blocks and cliffs, everything that can be seen from beside
     /// what is known is seen.

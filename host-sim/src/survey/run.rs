@@ -20,9 +20,9 @@ use super::trace::{Record, Safety, Trace};
 pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
     let Extent { width, height } = terrain.extent();
     match width.max(height).div_ceil(8) {
-        ..=4 => run_on::<4>(terrain, scenario),
-        ..=13 => run_on::<13>(terrain, scenario),
-        ..=25 => run_on::<25>(terrain, scenario),
+        0..=4 => run_on::<4>(terrain, scenario),
+        5..=13 => run_on::<13>(terrain, scenario),
+        14..=25 => run_on::<25>(terrain, scenario),
         _ => run_on::<64>(terrain, scenario),
     }
 }

@@ -2,7 +2,6 @@
 
 use super::Height;
 use crate::cell::Cell;
-use crate::math;
 use crate::point::Point;
 
 /// The part of a segment that lies in one column.
@@ -46,7 +45,7 @@ impl Columns {
             if start == end {
                 (f32::INFINITY, f32::INFINITY)
             } else {
-                ((border - from) / span, 1.0 / math::sqrt(span * span))
+                ((border - from) / span, 1.0 / span.abs())
             }
         };
         let (next_x, period_x) = axis(from.x, to.x, start.x, end.x);
@@ -140,6 +139,7 @@ pub fn clearance(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math;
     use proptest::prelude::*;
     use std::vec::Vec;
 
@@ -165,8 +165,14 @@ mod tests {
                 if near_border(at.x) || near_border(at.y) {
                     continue;
                 }
-                let found = columns.iter().find(|(cell, _)| *cell == at.cell());
-                prop_assert!(found.is_some_and(|(_, low)| *low <= at.z + 1e-3), "{:?} {:?}", at, found);
+                let found = columns.iter().find(|crossing| crossing.cell == at.cell());
+                prop_assert!(
+                    found.is_some_and(|crossing| {
+                        let (low, high) = (crossing.entered.min(crossing.left), crossing.entered.max(crossing.left));
+                        low <= at.z + 1e-3 && at.z <= high + 1e-3
+                    }),
+                    "{:?} {:?}", at, found
+                );
             }
         }
     }

@@ -11,7 +11,7 @@ const EXTENT: Extent = Extent::new(21, 14);
 fn column() -> impl Strategy<Value = Column> {
     (-2i16..24, -2i16..18, any::<u8>()).prop_map(|(x, y, height)| Column {
         cell: Cell::new(x, y),
-        height,
+        height: Height(height),
     })
 }
 

@@ -179,7 +179,9 @@ mod tests {
                 Cell::new(x, 30 - reach),
                 Cell::new(x, 30 + reach),
             ];
-            cells.map(|cell| news.add(cell));
+            for cell in cells {
+                news.add(cell);
+            }
             assert_eq!(news.reward(), 4.0);
         }
     }

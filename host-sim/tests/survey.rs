@@ -1,6 +1,6 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
-use host_sim::survey::{Kill, Planner, Scenario, Terrain, look, run};
+use host_sim::survey::{Kill, Planner, Scenario, Terrain, look, octree, run};
 use planner_core::surface::Height;
 use planner_core::survey::Stop;
 use planner_core::{Cell, Direction, Extent, Point};
@@ -86,6 +86,29 @@ fn the_same_seed_is_the_same_run() {
         assert_eq!(first, digest(&scenario));
         scenario.seed = 8;
         assert_ne!(first, digest(&scenario));
+    }
+}
+
+/// Two robots map a town, and OctoMap's own tool reads what they mapped (skipped where
+/// the tool is not installed; Debian: octomap-tools).
+#[test]
+fn a_town_is_mapped_as_octomap_reads_it() {
+    let terrain = Terrain::urban(1, 60);
+    for planner in OWN {
+        let trace = run(&terrain, &Scenario::new(planner, 2, 1)).unwrap();
+        assert!(trace.complete(), "{planner:?}");
+        assert_eq!(trace.safety, Default::default());
+        let tree = octree(&trace, u32::MAX);
+        let path = std::env::temp_dir().join(format!("town-{}.bt", std::process::id()));
+        tree.write(std::fs::File::create(&path).unwrap()).unwrap();
+        let Ok(tool) = std::process::Command::new("bt2vrml").arg(&path).output() else {
+            eprintln!("skipped: bt2vrml is not installed");
+            return;
+        };
+        assert!(tool.status.success());
+        let vrml = std::fs::read_to_string(path.with_extension("bt.wrl")).unwrap();
+        let occupied = tree.cubes().iter().filter(|cube| cube.occupied).count();
+        assert_eq!(vrml.matches("Box {").count(), occupied);
     }
 }
 

@@ -39,6 +39,9 @@ pub enum Choice {
     Cubic,
 }
 
+/// Steps without gain near a target after which the robot looks over its edges.
+const NEAR_PATIENCE: u8 = 6;
+
 /// What a fleet agrees on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
@@ -60,6 +63,8 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     rescue: Rescue<TW, TH>,
     target: Option<Cell>,
     stopped: bool,
+    /// Steps near a target since the last gain.
+    stuck: u8,
     /// Whether the last step was a local one.
     local: bool,
     work: u32,
@@ -76,6 +81,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             rescue: Rescue::new(),
             target: None,
             stopped: false,
+            stuck: 0,
             local: false,
             work: 0,
         })
@@ -93,6 +99,21 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     fn look_at(&mut self, number: u32) {
         self.work = self.work.saturating_add(number);
+    }
+
+    /// Whether the robot has been near its target for a while and gained nothing: it
+    /// hides, behind an edge or on a tower.
+    fn is_stuck(&mut self, gain: f32) -> bool {
+        let here = self.knowledge.position();
+        let near = self.target.is_none_or(|target| {
+            here.plan_distance(Point::over(target, 0.0)) < 0.5 * self.config.limits.range
+        });
+        if gain > 0.0 {
+            self.stuck = 0;
+        } else if near {
+            self.stuck = self.stuck.saturating_add(1);
+        }
+        self.stuck >= NEAR_PATIENCE
     }
 
     fn fly_to(&mut self, target: Option<Cell>) -> Option<Action> {
@@ -155,7 +176,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
         if self.knowledge.take_blocked() {
             return self.sidestep();
         }
-        if self.knowledge.idle() >= PATIENCE {
+        if self.is_stuck(gain) || self.knowledge.idle() >= PATIENCE {
             let action = self.rescue.tick(&self.knowledge);
             self.look_at(self.rescue.work);
             self.target = self.rescue.target();

@@ -138,8 +138,9 @@ fn a_robot_fits_into_24_kib() {
     assert!(size_of::<CoordinatedSurvey<13, 13>>() <= 24 * 1024);
 }
 
-/// Everything that can be seen from just inside the edges of seen columns that border
-/// unseen ones, from low to high in steps, again and again until nothing is new.
+/// Everything that can be seen from just inside the edges of columns that border unseen
+/// ones and can be flown to over seen ones, from low to high in steps, again and again
+/// until nothing is new.
 fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
     let limits = scenario.limits;
     let mut seen: Vec<Cell> = look(terrain, start, limits.range)
@@ -148,8 +149,17 @@ fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
         .collect();
     loop {
         let before = seen.len();
-        for i in 0..before {
-            let cell = seen[i];
+        let mut reached = vec![start.cell()];
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            for beside in Direction::ALL.map(|direction| cell.step(direction)) {
+                if seen.contains(&beside) && !reached.contains(&beside) {
+                    reached.push(beside);
+                }
+            }
+        }
+        for cell in reached {
             for direction in Direction::ALL {
                 let beyond = cell.step(direction);
                 if !terrain.extent().contains(beyond) || seen.contains(&beyond) {

@@ -16,7 +16,7 @@ pub use tile::{Bits, SIDE, Tile};
 use core::fmt;
 
 use crate::cell::{Cell, Extent};
-use tile::neighbours_of;
+pub(crate) use tile::neighbours_of;
 
 /// Height of the ground, in quarters of a cell: from 0 to 63.75 cells. Whole cells
 /// would be too coarse: each stair of a gentle slope would hide the ground below it.

@@ -56,7 +56,7 @@ impl Tile {
 
 /// The cells that have a set 4-neighbour, given a layer's word and the words north,
 /// east, south and west of it.
-pub(super) const fn neighbours_of(here: u64, [north, east, south, west]: [u64; 4]) -> u64 {
+pub(crate) const fn neighbours_of(here: u64, [north, east, south, west]: [u64; 4]) -> u64 {
     let from_north = (here << 8) | (north >> 56);
     let from_south = (here >> 8) | (south << 56);
     let from_west = ((here << 1) & !WEST_EDGE) | ((west & EAST_EDGE) >> 7);

@@ -10,7 +10,7 @@
 use super::{Action, Knowledge, Stop};
 use crate::cell::{Cell, Direction};
 use crate::point::Point;
-use crate::surface::Tile;
+use crate::surface::{Columns, Tile, neighbours_of};
 
 /// Steps without gain after which the rescue begins.
 pub const PATIENCE: u16 = 50;
@@ -86,7 +86,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if !self.climbing {
             self.patience = self.patience.saturating_sub(1);
             let cruise = knowledge.limits().min_altitude + MARGIN;
-            match knowledge.step_towards(place, cruise) {
+            let next = self.next_place(knowledge, target, place);
+            match knowledge.step_towards(next, cruise) {
                 Some(to) if self.patience > 0 => return Action::Fly(to),
                 _ => self.climbing = true,
             }
@@ -99,13 +100,63 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         Action::Hover
     }
 
+    /// Where to fly next on the way to `place` over `target`: there if all ground on
+    /// the straight way is known, or else to the next column on the shortest way over
+    /// known columns.
+    ///
+    /// Cost: the columns on the straight way, or all tiles once for each column of the
+    /// shortest way.
+    fn next_place(&mut self, knowledge: &Knowledge<TW, TH>, target: Cell, place: Point) -> Point {
+        let surface = knowledge.surface();
+        let here = knowledge.position();
+        if Columns::new(here, place).all(|crossing| surface.height(crossing.cell).is_some()) {
+            return place;
+        }
+        // A wave from the target until it wets a column beside the robot.
+        let mut wave = [[0u64; TW]; TH];
+        if let Some(word) = word_of(&mut wave, target) {
+            *word |= 1 << Tile::bit(target);
+        }
+        for _ in 0..surface.known_columns() {
+            let beside = Direction::ALL.map(|direction| here.cell().step(direction));
+            let wet = beside.into_iter().find(|&cell| {
+                word_of(&mut wave, cell).is_some_and(|word| *word >> Tile::bit(cell) & 1 == 1)
+            });
+            if let Some(cell) = wet {
+                return Point::over(cell, 0.0);
+            }
+            self.work = self.work.saturating_add((TW * TH) as u32);
+            let before = wave;
+            let at = |x: Option<u8>, y: Option<u8>| {
+                let row = before.get(usize::from(y?))?;
+                row.get(usize::from(x?)).copied()
+            };
+            for tile in surface.tiles() {
+                let around = [
+                    at(Some(tile.x), tile.y.checked_sub(1)),
+                    at(tile.x.checked_add(1), Some(tile.y)),
+                    at(Some(tile.x), tile.y.checked_add(1)),
+                    at(tile.x.checked_sub(1), Some(tile.y)),
+                ]
+                .map(|word| word.unwrap_or(0));
+                if let Some(word) = word_of(&mut wave, tile.cell(0)) {
+                    *word |= neighbours_of(*word, around) & surface.known(tile);
+                }
+            }
+            if wave == before {
+                break;
+            }
+        }
+        place
+    }
+
     /// Sets out for the target's edge number `edge`.
     fn begin(&mut self, knowledge: &Knowledge<TW, TH>, edge: u8) {
         self.edge = edge;
         self.climbing = false;
         self.patience = self.target.map_or(0, |cell| {
             let way = knowledge.position().plan_distance(Point::over(cell, 0.0));
-            ((4.0 * way / knowledge.limits().step) as u16).saturating_add(20)
+            ((16.0 * way / knowledge.limits().step) as u16).saturating_add(60)
         });
     }
 
@@ -119,14 +170,21 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 
     fn mark_tried(&mut self, cell: Cell) {
-        if let Some(word) = Tile::of(cell).and_then(|tile| {
-            self.tried
-                .get_mut(usize::from(tile.y))?
-                .get_mut(usize::from(tile.x))
-        }) {
+        if let Some(word) = word_of(&mut self.tried, cell) {
             *word |= 1 << Tile::bit(cell);
         }
     }
+}
+
+/// The word of a layer that has the bit of `cell`.
+fn word_of<const TW: usize, const TH: usize>(
+    layer: &mut [[u64; TW]; TH],
+    cell: Cell,
+) -> Option<&mut u64> {
+    let tile = Tile::of(cell)?;
+    layer
+        .get_mut(usize::from(tile.y))?
+        .get_mut(usize::from(tile.x))
 }
 
 /// The first edge of `frontier`, from number `first` on, that borders an unknown

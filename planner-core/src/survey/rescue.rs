@@ -156,7 +156,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.climbing = false;
         self.patience = self.target.map_or(0, |cell| {
             let way = knowledge.position().plan_distance(Point::over(cell, 0.0));
-            ((16.0 * way / knowledge.limits().step) as u16).saturating_add(60)
+            ((8.0 * way / knowledge.limits().step) as u16).saturating_add(30)
         });
     }
 

@@ -31,11 +31,11 @@ const CRUISE: f32 = 0.36;
 /// How a robot chooses among random local steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Choice {
-    /// Each candidate is judged on the map: the best, where words are counted fast.
+    /// Each candidate is judged on the map: the faster survey in small fleets.
     #[default]
     Map,
     /// Eight probes are judged on the map, and CAO's cubic through them and the past
-    /// judges the candidates: a third of the work, a few per cent slower surveys.
+    /// judges the candidates: less work.
     Cubic,
 }
 

@@ -1,8 +1,7 @@
 //! FCAO as published: local optimisation by CAO, and the closest frontier when that
 //! is stuck [Renzaglia2019 Algorithm 1].
 //!
-//! The paper leaves points open; the readings taken here are the ones that
-//! reproduce its findings, and each is named where it is applied.
+//! The paper leaves points open: each reading taken here is named where it is applied.
 
 mod history;
 
@@ -33,7 +32,7 @@ pub struct Config {
     pub limits: Limits,
     /// Degree of the local model; cubic as published.
     pub degree: Degree,
-    /// Number M of random candidates in each step; 50 to 100 is plenty.
+    /// Number M of random candidates in each step.
     pub candidates: u16,
     /// Seed of the fleet's random candidates.
     pub seed: u64,
@@ -52,7 +51,7 @@ impl Config {
 }
 
 /// FCAO on one robot, over a map of `TW`×`TH` tiles, with a history of `H`
-/// measurements, the current one included (8 is best, 4 and 20 cost 5 %).
+/// measurements, the current one included.
 #[derive(Clone, Debug)]
 pub struct Fcao<const TW: usize, const TH: usize, const H: usize = 8> {
     config: Config,

@@ -12,8 +12,8 @@ const WINDOW: usize = 4;
 /// the robot stands on the tiles.
 pub const MAX_RANGE: f32 = 12.0;
 
-/// Steps for which own discoveries are repeated to the others: without repetition
-/// 10 % of lost messages cost more than half of the fleet's speed.
+/// Steps for which own discoveries are repeated to the others, so that a lost message
+/// does little harm.
 pub(super) const REPEATS: usize = 4;
 
 /// A layer of bits on the tiles around a robot.

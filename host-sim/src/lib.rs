@@ -21,5 +21,6 @@ pub mod planners;
 pub mod run;
 pub mod sensor;
 pub mod summary;
+pub mod survey;
 pub mod trace;
 pub mod world;

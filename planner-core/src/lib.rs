@@ -5,16 +5,24 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod cao;
 mod cell;
+pub mod coordinated_survey;
 pub mod explorer;
+pub mod fcao;
 pub mod local_frontiers;
 pub mod map;
 mod math;
 mod planner;
+mod point;
 pub mod radio;
+pub mod rng;
 pub mod sight;
+pub mod surface;
+pub mod survey;
 
 pub use cell::{Cell, Direction, Extent};
 pub use map::{Learnt, Map, TileSet};
 pub use planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+pub use point::Point;
 pub use sight::Sighting;

@@ -1,17 +1,36 @@
-//! The only door to floating-point functions: `libm` by path, so that host and
-//! target agree in the last bit. (`std`'s `sin` and its kin do not.)
+//! The only door to floating-point functions.
+//!
+//! Host `std` and `libm` differ in the last bit for some inputs, so every function
+//! here names its implementation by path: the same input then gives the same bits
+//! on every target. `+ - * /` and comparisons are IEEE 754 everywhere and need no
+//! door.
 
-/// Sine of an angle in radians.
-pub(crate) fn sin(x: f32) -> f32 {
-    libm::sinf(x)
+/// Square root; NaN below zero.
+pub(crate) fn sqrt(x: f32) -> f32 {
+    libm::sqrtf(x)
 }
 
-/// Cosine of an angle in radians.
-pub(crate) fn cos(x: f32) -> f32 {
-    libm::cosf(x)
+/// Sine and cosine of an angle in radians.
+pub(crate) fn sin_cos(angle: f32) -> (f32, f32) {
+    (libm::sinf(angle), libm::cosf(angle))
 }
 
-/// The largest integer not above `x`.
+/// e to the power `x`.
+pub(crate) fn exp(x: f32) -> f32 {
+    libm::expf(x)
+}
+
+/// The largest whole number not above `x`.
 pub(crate) fn floor(x: f32) -> f32 {
     libm::floorf(x)
+}
+
+/// Length of the vector `(x, y)`.
+pub(crate) fn length(x: f32, y: f32) -> f32 {
+    sqrt(x * x + y * y)
+}
+
+/// Angle of the vector `(x, y)` from the x axis, in `(-π, π]`; 0 for no vector.
+pub(crate) fn heading(x: f32, y: f32) -> f32 {
+    libm::atan2f(y, x)
 }

@@ -86,9 +86,9 @@ fn main() -> ExitCode {
 }
 
 fn soak(runs: u64) -> anyhow::Result<()> {
-    let runs = runs.to_string();
-    shell::cargo(["run", "--release", "-p", "host-sim", "--", "soak", "--runs"])
-        .arg(runs)
+    shell::cargo(["test", "--release", "-p", "planner-core", "--lib"])
+        .args(["--", "every_robot_stops_with_a_complete_map"])
+        .env("PROPTEST_CASES", &runs.to_string())
         .run()
 }
 

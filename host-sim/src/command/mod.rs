@@ -23,3 +23,14 @@ pub(crate) use live::{Robot, World};
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;
+
+/// `host-sim survey`.
+pub(crate) fn survey(survey: &host_sim::survey::SurveyArgs) -> Done {
+    let (report, complete) = survey.run()?;
+    println!("{report}");
+    Ok(if complete {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}

@@ -243,8 +243,6 @@ fn assert_complete(scene: &Scene) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: std::env::var("CASES").map_or(400, |c| c.parse().unwrap()), ..ProptestConfig::default() })]
-
     #[test]
     fn every_robot_stops_with_a_complete_map(scene in scene()) {
         assert_complete(&scene)?;

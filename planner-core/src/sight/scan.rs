@@ -104,8 +104,9 @@ impl RangeScan<'_> {
         let length = if hit { beam.range } else { reach };
         let angle = self.pose.heading + beam.bearing;
         let mut cell = sighting.centre();
-        let mut along_x = Axis::new(self.pose.x, math::cos(angle));
-        let mut along_y = Axis::new(self.pose.y, math::sin(angle));
+        let (sin, cos) = math::sin_cos(angle);
+        let mut along_x = Axis::new(self.pose.x, cos);
+        let mut along_y = Axis::new(self.pose.y, sin);
 
         // A beam crosses at most 15 columns and 15 rows, and one more of each at its end.
         for _ in 0..2 * (u32::from(MAX_RADIUS) + 1) {

@@ -1,0 +1,162 @@
+//! The methods that FCAO is compared with [Renzaglia2019 §5]. Both fly by the same
+//! rules as the planners of the core.
+
+use planner_core::surface::{Bits, Surface};
+use planner_core::survey::{
+    Action, Knowledge, Limits, PATIENCE, SetupError, Status, Stop, Surveyor,
+};
+use planner_core::{Cell, Extent, Point};
+
+/// Who chooses the frontier that a [`Follower`] flies to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Guide {
+    /// The robot: the closest frontier, chosen anew in every step.
+    Closest,
+    /// A centre that knows the map and all robots: [`assign`].
+    Centre,
+}
+
+/// A robot that flies to one frontier after the other.
+#[derive(Clone, Debug)]
+pub struct Follower<const TW: usize, const TH: usize> {
+    knowledge: Knowledge<TW, TH>,
+    guide: Guide,
+    target: Option<Cell>,
+    stopped: bool,
+    work: u32,
+}
+
+impl<const TW: usize, const TH: usize> Follower<TW, TH> {
+    /// A robot over a surface of `extent` columns.
+    pub fn new(extent: Extent, limits: Limits, guide: Guide) -> Result<Self, SetupError> {
+        let knowledge = Knowledge::new(extent, limits)?;
+        Ok(Self {
+            knowledge,
+            guide,
+            target: None,
+            stopped: false,
+            work: 0,
+        })
+    }
+
+    /// The centre's orders, which cost `work` to find.
+    pub fn send_to(&mut self, target: Option<Cell>, work: u32) {
+        self.target = target;
+        self.work = work;
+    }
+}
+
+impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
+    fn knowledge(&self) -> &Knowledge<TW, TH> {
+        &self.knowledge
+    }
+
+    fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
+        &mut self.knowledge
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            position: self.knowledge.position(),
+            target: self.target,
+            stopped: self.stopped,
+        }
+    }
+
+    fn work(&self) -> u32 {
+        self.work
+    }
+
+    fn tick(&mut self) -> Action {
+        self.knowledge.settle();
+        self.stopped = self.knowledge.surface().frontiers() == 0;
+        if self.stopped {
+            return Action::Stop(Stop::Complete);
+        }
+        let stuck = self.knowledge.idle() >= PATIENCE;
+        if self.guide == Guide::Closest || stuck {
+            let here = self.knowledge.position();
+            (self.target, self.work) = self.knowledge.closest_frontier(here, |_| true);
+        }
+        let Limits {
+            range,
+            min_altitude,
+            ..
+        } = self.knowledge.limits();
+        // The same liveness guard as the planners have.
+        let cruise = if stuck {
+            min_altitude + 0.1
+        } else {
+            min_altitude.max(range / 2.0)
+        };
+        self.target
+            .and_then(|target| {
+                self.knowledge
+                    .step_towards(Point::over(target, 0.0), cruise)
+            })
+            .map_or(Action::Hover, Action::Fly)
+    }
+}
+
+/// The centralised greedy method: frontiers are grouped by leader clustering of
+/// radius `range`, the member nearest to a group's centroid stands for it, and robots
+/// and groups are matched by the smallest distance left. Robots left over start a
+/// second round. Also returns the number of distances computed.
+pub fn assign<const TW: usize, const TH: usize>(
+    surface: &Surface<TW, TH>,
+    robots: &[Point],
+    range: f32,
+) -> (Vec<Option<Cell>>, u32) {
+    let mut work = 0;
+    let mut groups: Vec<Vec<Point>> = Vec::new();
+    let frontiers = surface
+        .tiles()
+        .flat_map(|tile| Bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
+    for cell in frontiers {
+        let at = Point::over(cell, 0.0);
+        let mut leaders = groups.iter_mut();
+        let group = leaders.find(|group| {
+            work += 1;
+            group[0].plan_distance(at) <= range
+        });
+        match group {
+            Some(group) => group.push(at),
+            None => groups.push(vec![at]),
+        }
+    }
+    let goals: Vec<Point> = groups
+        .iter()
+        .map(|group| nearest_to_centroid(group, &mut work))
+        .collect();
+    let mut targets = vec![None; robots.len()];
+    let mut free: Vec<usize> = (0..robots.len()).collect();
+    while !free.is_empty() && !goals.is_empty() {
+        let mut open: Vec<Point> = goals.clone();
+        while !free.is_empty() && !open.is_empty() {
+            work += (free.len() * open.len()) as u32;
+            let pairs = free.iter().enumerate().flat_map(|(i, &robot)| {
+                open.iter()
+                    .enumerate()
+                    .map(move |(j, goal)| (i, j, robots[robot].plan_distance(*goal)))
+            });
+            let (i, j, _) = pairs
+                .min_by(|a, b| a.2.total_cmp(&b.2))
+                .expect("neither is empty");
+            targets[free.remove(i)] = Some(open.remove(j).cell());
+        }
+    }
+    (targets, work)
+}
+
+fn nearest_to_centroid(group: &[Point], work: &mut u32) -> Point {
+    *work += group.len() as u32;
+    let number = group.len() as f32;
+    let x = group.iter().map(|p| p.x).sum::<f32>() / number;
+    let y = group.iter().map(|p| p.y).sum::<f32>() / number;
+    let centroid = Point::new(x, y, 0.0);
+    let distance = |p: &Point| p.plan_distance(centroid);
+    *group
+        .iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        .expect("no group is empty")
+}

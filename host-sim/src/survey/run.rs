@@ -1,0 +1,345 @@
+//! A run: sense, share, decide in turn, fly; until every living robot has stopped.
+
+use std::time::Instant;
+
+use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
+use planner_core::fcao::{self, Fcao};
+use planner_core::surface::{Patch, Surface, clearance};
+use planner_core::survey::{Action, Motion, SetupError, Status, Surveyor};
+use planner_core::{Extent, Point};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::baselines::{Follower, Guide, assign};
+use super::scenario::{Planner, Scenario};
+use super::sensor::look;
+use super::terrain::Terrain;
+use super::trace::{Record, Safety, Trace};
+
+/// Runs `scenario` over `terrain`.
+pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
+    let Extent { width, height } = terrain.extent();
+    match width.max(height).div_ceil(8) {
+        0..=4 => run_on::<4>(terrain, scenario),
+        5..=13 => run_on::<13>(terrain, scenario),
+        14..=25 => run_on::<25>(terrain, scenario),
+        _ => run_on::<64>(terrain, scenario),
+    }
+}
+
+enum Pilot<const T: usize> {
+    Follower(Box<Follower<T, T>>),
+    Other(Box<dyn Surveyor<T, T>>),
+}
+
+impl<const T: usize> Pilot<T> {
+    fn get(&self) -> &dyn Surveyor<T, T> {
+        match self {
+            Self::Follower(follower) => follower.as_ref(),
+            Self::Other(other) => other.as_ref(),
+        }
+    }
+
+    fn get_mut(&mut self) -> &mut dyn Surveyor<T, T> {
+        match self {
+            Self::Follower(follower) => follower.as_mut(),
+            Self::Other(other) => other.as_mut(),
+        }
+    }
+}
+
+struct Robot<const T: usize> {
+    pilot: Pilot<T>,
+    at: Point,
+    alive: bool,
+    awake: bool,
+    stopped: bool,
+}
+
+fn run_on<const T: usize>(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
+    let mut sim = Simulation::<T>::new(terrain, scenario)?;
+    while sim.step() {}
+    Ok(sim.trace)
+}
+
+struct Simulation<'a, const T: usize> {
+    terrain: &'a Terrain,
+    scenario: &'a Scenario,
+    robots: Vec<Robot<T>>,
+    /// What anybody has seen.
+    union: Box<Surface<T, T>>,
+    faults: ChaCha8Rng,
+    now: u32,
+    trace: Trace,
+}
+
+impl<'a, const T: usize> Simulation<'a, T> {
+    fn new(terrain: &'a Terrain, scenario: &'a Scenario) -> Result<Self, SetupError> {
+        let extent = terrain.extent();
+        let starts = start_positions(terrain, scenario);
+        let robots = starts
+            .iter()
+            .copied()
+            .enumerate()
+            .map(|(id, at)| {
+                let pilot = pilot(extent, scenario, id as u8)?;
+                Ok(Robot {
+                    pilot,
+                    at,
+                    alive: true,
+                    awake: true,
+                    stopped: false,
+                })
+            })
+            .collect::<Result<_, SetupError>>()?;
+        Ok(Self {
+            terrain,
+            scenario,
+            robots,
+            union: Box::new(Surface::new(extent)?),
+            faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+            now: 0,
+            trace: Trace::new(extent, starts),
+        })
+    }
+
+    /// One step of the fleet; says whether there is another.
+    fn step(&mut self) -> bool {
+        for kill in &self.scenario.kills {
+            if kill.step == self.now
+                && let Some(robot) = self.robots.get_mut(kill.robot)
+            {
+                robot.alive = false;
+            }
+        }
+        for i in 0..self.robots.len() {
+            self.robots[i].awake = self.robots[i].alive && !self.happens(self.scenario.skip);
+        }
+        self.sense();
+        self.share();
+        self.trace.seen.push(self.union.known_columns());
+        let going = self
+            .robots
+            .iter()
+            .any(|robot| robot.alive && !robot.stopped);
+        self.trace.all_stopped = !going;
+        if !going || self.now >= self.scenario.max_steps {
+            return false;
+        }
+        let orders = self.orders();
+        for i in 0..self.robots.len() {
+            if self.robots[i].awake {
+                self.act(i, &orders);
+            }
+        }
+        self.check_safety();
+        self.now += 1;
+        true
+    }
+
+    fn sense(&mut self) {
+        for robot in self.robots.iter_mut().filter(|robot| robot.awake) {
+            let columns = look(self.terrain, robot.at, self.scenario.limits.range);
+            for &column in &columns {
+                if self.union.learn(column) {
+                    self.trace.found.push((self.now, column));
+                }
+            }
+            robot.pilot.get_mut().observe(robot.at, &columns);
+        }
+    }
+
+    /// Everybody's position and news to everybody.
+    fn share(&mut self) {
+        let messages: Vec<Option<(Status, Vec<Patch>)>> = self
+            .robots
+            .iter()
+            .map(|robot| {
+                let pilot = robot.pilot.get();
+                robot
+                    .awake
+                    .then(|| (pilot.status(), pilot.knowledge().patches().collect()))
+            })
+            .collect();
+        for (from, message) in messages.iter().enumerate() {
+            let Some((status, patches)) = message else {
+                continue;
+            };
+            for to in (0..self.robots.len()).filter(|&to| to != from) {
+                if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                    let pilot = self.robots[to].pilot.get_mut();
+                    pilot.hear(from as u8, *status);
+                    for patch in patches {
+                        pilot.merge(patch);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The centre's targets, if there is a centre.
+    fn orders(&self) -> (Vec<Option<planner_core::Cell>>, u32) {
+        if self.scenario.planner != Planner::Greedy {
+            return (Vec::new(), 0);
+        }
+        let positions: Vec<Point> = self.robots.iter().map(|robot| robot.at).collect();
+        assign(&self.union, &positions, self.scenario.limits.range)
+    }
+
+    /// Robot `i` decides, flies and tells the others where it is and goes.
+    fn act(&mut self, i: usize, (orders, cost): &(Vec<Option<planner_core::Cell>>, u32)) {
+        let began = Instant::now();
+        if let Pilot::Follower(follower) = &mut self.robots[i].pilot
+            && let Some(&target) = orders.get(i)
+        {
+            follower.send_to(target, *cost);
+        }
+        let pilot = self.robots[i].pilot.get_mut();
+        let action = pilot.tick();
+        self.trace
+            .decision_nanoseconds
+            .push(began.elapsed().as_nanos() as u64);
+        let from = self.robots[i].at;
+        let blocked = if let Action::Fly(to) = action {
+            let refused = self.collides(i, to);
+            if !refused {
+                self.trace
+                    .safety
+                    .check_flight(self.terrain, &self.scenario.limits, from, to);
+                self.robots[i].at = to;
+            }
+            let motion = if refused {
+                Motion::Blocked
+            } else {
+                Motion::Moved
+            };
+            self.robots[i].pilot.get_mut().report(motion);
+            refused
+        } else {
+            false
+        };
+        self.robots[i].stopped = matches!(action, Action::Stop(_));
+        let at = self.robots[i].at;
+        let pilot = self.robots[i].pilot.get();
+        let status = Status {
+            position: at,
+            ..pilot.status()
+        };
+        self.trace.records.push(Record {
+            step: self.now,
+            robot: i as u8,
+            at,
+            gain: pilot.knowledge().gain(),
+            target: status.target,
+            stop: if let Action::Stop(stop) = action {
+                Some(stop)
+            } else {
+                None
+            },
+            blocked,
+            work: pilot.work(),
+        });
+        for to in (0..self.robots.len()).filter(|&to| to != i) {
+            if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                self.robots[to].pilot.get_mut().hear(i as u8, status);
+            }
+        }
+    }
+
+    /// The flight controller's own sense of nearness: without radio a planner cannot
+    /// know where the others are, and such a flight is refused.
+    fn collides(&self, i: usize, to: Point) -> bool {
+        self.robots.iter().enumerate().any(|(other, robot)| {
+            other != i && robot.alive && robot.at.distance(to) < self.scenario.limits.separation
+        })
+    }
+
+    fn check_safety(&mut self) {
+        let alive: Vec<Point> = self
+            .robots
+            .iter()
+            .filter(|robot| robot.alive)
+            .map(|robot| robot.at)
+            .collect();
+        for (i, a) in alive.iter().enumerate() {
+            for b in &alive[i + 1..] {
+                let near = a.distance(*b) < self.scenario.limits.separation - TOLERANCE;
+                self.trace.safety.separation_violations += u32::from(near);
+            }
+        }
+    }
+
+    fn happens(&mut self, probability: f64) -> bool {
+        probability > 0.0 && f64::from(self.faults.next_u32()) / f64::from(u32::MAX) < probability
+    }
+}
+
+/// Rounding that a planner's f32 arithmetic may be off by.
+const TOLERANCE: f32 = 1e-3;
+
+impl Safety {
+    fn check_flight(
+        &mut self,
+        terrain: &Terrain,
+        limits: &planner_core::survey::Limits,
+        from: Point,
+        to: Point,
+    ) {
+        let least = clearance(from, to, |cell| terrain.height(cell));
+        self.altitude_violations += u32::from(
+            to.z > limits.ceiling + TOLERANCE
+                || least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
+        );
+        self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
+        self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
+    }
+}
+
+/// In the north-west corner, two cells apart, row by row of a square.
+fn start_positions(terrain: &Terrain, scenario: &Scenario) -> Vec<Point> {
+    let per_row = (scenario.robots as f64).sqrt().ceil() as usize;
+    let altitude = scenario.limits.min_altitude + 1.0;
+    (0..scenario.robots)
+        .map(|i| {
+            let place =
+                planner_core::Cell::new(2 + 2 * (i % per_row) as i16, 2 + 2 * (i / per_row) as i16);
+            Point::over(
+                place,
+                terrain.height(place).unwrap_or_default().cells() + altitude,
+            )
+        })
+        .collect()
+}
+
+fn pilot<const T: usize>(
+    extent: Extent,
+    scenario: &Scenario,
+    id: u8,
+) -> Result<Pilot<T>, SetupError> {
+    let limits = scenario.limits;
+    Ok(match scenario.planner {
+        Planner::ClosestFrontier => {
+            Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Closest)?))
+        }
+        Planner::Greedy => Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Centre)?)),
+        Planner::CoordinatedSurvey | Planner::CoordinatedCubic => {
+            let choice = if scenario.planner == Planner::CoordinatedCubic {
+                Choice::Cubic
+            } else {
+                Choice::Map
+            };
+            let config = coordinated_survey::Config {
+                limits,
+                choice,
+                seed: scenario.seed,
+            };
+            Pilot::Other(Box::new(CoordinatedSurvey::<T, T>::new(
+                extent, config, id,
+            )?))
+        }
+        Planner::Fcao => {
+            let config = fcao::Config::new(limits, scenario.seed);
+            Pilot::Other(Box::new(Fcao::<T, T>::new(extent, config, id)?))
+        }
+    })
+}

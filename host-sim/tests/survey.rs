@@ -1,0 +1,216 @@
+//! What a survey owes, over random terrains, fleets and faults.
+
+use host_sim::survey::{Kill, Planner, Scenario, Terrain, look, octree, run};
+use planner_core::surface::Height;
+use planner_core::survey::Stop;
+use planner_core::{Cell, Direction, Extent, Point};
+use proptest::prelude::*;
+
+const ALL: [Planner; 5] = [
+    Planner::CoordinatedSurvey,
+    Planner::CoordinatedCubic,
+    Planner::Fcao,
+    Planner::ClosestFrontier,
+    Planner::Greedy,
+];
+
+const OWN: [Planner; 3] = [
+    Planner::CoordinatedSurvey,
+    Planner::CoordinatedCubic,
+    Planner::Fcao,
+];
+
+/// The robots' rewards add up to the number of explored columns, and nothing unsafe
+/// happens on the way [Renzaglia2019 eq. 2].
+#[test]
+fn rewards_add_up_and_flights_are_safe() {
+    for (seed, planner) in (0..).zip(ALL) {
+        for robots in [1, 3, 8] {
+            let terrain = Terrain::gaussian(seed, 48);
+            let trace = run(&terrain, &Scenario::new(planner, robots, seed)).unwrap();
+            let rewards: f64 = trace.records.iter().map(|r| f64::from(r.gain)).sum();
+            assert!(
+                (rewards - 48.0 * 48.0).abs() < 0.1,
+                "{planner:?}: {rewards}"
+            );
+            assert_eq!(trace.safety, Default::default(), "{planner:?}");
+            assert!(trace.complete());
+        }
+    }
+}
+
+/// Whatever is lost, killed or slept through: every robot that lives ends complete,
+/// and nothing unsafe happens.
+#[test]
+fn faults_slow_a_survey_but_do_not_stop_it() {
+    for (seed, planner) in (0..).zip(OWN) {
+        for (loss, skip, killed) in [
+            (0.3, 0.0, 0),
+            (0.9, 0.0, 0),
+            (1.0, 0.0, 0),
+            (0.0, 0.3, 0),
+            (0.0, 0.6, 0),
+            (0.1, 0.1, 3),
+        ] {
+            let terrain = Terrain::gaussian(seed, 40);
+            let mut scenario = Scenario::new(planner, 4, seed);
+            (scenario.loss, scenario.skip) = (loss, skip);
+            scenario.kills = (0..killed)
+                .map(|robot| Kill {
+                    robot,
+                    step: 5 + 7 * robot as u32,
+                })
+                .collect();
+            let trace = run(&terrain, &scenario).unwrap();
+            assert!(
+                trace.complete(),
+                "{planner:?} loss {loss} skip {skip} killed {killed}"
+            );
+            for robot in killed as u8..4 {
+                let last = trace.records.iter().rfind(|r| r.robot == robot).unwrap();
+                assert_eq!(last.stop, Some(Stop::Complete));
+            }
+            assert_eq!(trace.safety, Default::default());
+        }
+    }
+}
+
+#[test]
+fn the_same_seed_is_the_same_run() {
+    let terrain = Terrain::gaussian(7, 40);
+    for planner in ALL {
+        let mut scenario = Scenario::new(planner, 4, 7);
+        (scenario.loss, scenario.skip) = (0.2, 0.1);
+        let digest = |scenario: &Scenario| run(&terrain, scenario).unwrap().digest();
+        let first = digest(&scenario);
+        assert_eq!(first, digest(&scenario));
+        scenario.seed = 8;
+        assert_ne!(first, digest(&scenario));
+    }
+}
+
+/// Two robots map a town, and OctoMap's own tool reads what they mapped (skipped where
+/// the tool is not installed; Debian: octomap-tools).
+#[test]
+fn a_town_is_mapped_as_octomap_reads_it() {
+    let terrain = Terrain::urban(1, 60);
+    for planner in OWN {
+        let trace = run(&terrain, &Scenario::new(planner, 2, 1)).unwrap();
+        assert!(trace.complete(), "{planner:?}");
+        assert_eq!(trace.safety, Default::default());
+        let tree = octree(&trace, u32::MAX);
+        let path = std::env::temp_dir().join(format!("town-{}.bt", std::process::id()));
+        tree.write(std::fs::File::create(&path).unwrap()).unwrap();
+        let Ok(tool) = std::process::Command::new("bt2vrml").arg(&path).output() else {
+            eprintln!("skipped: bt2vrml is not installed");
+            return;
+        };
+        assert!(tool.status.success());
+        let vrml = std::fs::read_to_string(path.with_extension("bt.wrl")).unwrap();
+        let occupied = tree.cubes().iter().filter(|cube| cube.occupied).count();
+        assert_eq!(vrml.matches("Box {").count(), occupied);
+    }
+}
+
+/// The work of a decision has a bound that does not grow with the fleet or the run.
+#[test]
+fn work_is_bounded() {
+    for planner in OWN {
+        let worst = |side: u16, robots: usize| {
+            let trace = run(
+                &Terrain::gaussian(3, side),
+                &Scenario::new(planner, robots, 3),
+            )
+            .unwrap();
+            trace.records.iter().map(|r| r.work).max().unwrap()
+        };
+        let small = worst(60, 2);
+        let large = worst(100, 8);
+        assert!(large < 2 * small + 1000, "{planner:?} {small} {large}");
+    }
+}
+
+/// One robot's whole state for 100×100 columns, heights included.
+#[test]
+fn a_robot_fits_into_24_kib() {
+    use planner_core::{coordinated_survey::CoordinatedSurvey, fcao::Fcao};
+    assert!(size_of::<Fcao<13, 13>>() <= 24 * 1024);
+    assert!(size_of::<CoordinatedSurvey<13, 13>>() <= 24 * 1024);
+}
+
+/// Everything that can be seen from just inside the edges of columns that border unseen
+/// ones and can be flown to over seen ones, from low to high in steps, again and again
+/// until nothing is new.
+fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
+    let limits = scenario.limits;
+    let mut seen: Vec<Cell> = look(terrain, start, limits.range)
+        .iter()
+        .map(|c| c.cell)
+        .collect();
+    loop {
+        let before = seen.len();
+        let mut reached = vec![start.cell()];
+        let mut next = 0;
+        while let Some(&cell) = reached.get(next) {
+            next += 1;
+            for beside in Direction::ALL.map(|direction| cell.step(direction)) {
+                if seen.contains(&beside) && !reached.contains(&beside) {
+                    reached.push(beside);
+                }
+            }
+        }
+        for cell in reached {
+            for direction in Direction::ALL {
+                let beyond = cell.step(direction);
+                if !terrain.extent().contains(beyond) || seen.contains(&beyond) {
+                    continue;
+                }
+                let (dx, dy) = direction.delta();
+                let ground = terrain.height(cell).unwrap().cells();
+                let mut z = ground + limits.min_altitude + 0.1;
+                while z <= limits.ceiling {
+                    let eye = Point::over(cell, z).offset(
+                        0.45 * f32::from(dx),
+                        0.45 * f32::from(dy),
+                        0.0,
+                    );
+                    let new = look(terrain, eye, limits.range);
+                    seen.extend(
+                        new.iter()
+                            .map(|c| c.cell)
+                            .filter(|c| !seen.contains(c))
+                            .collect::<Vec<_>>(),
+                    );
+                    z += limits.step;
+                }
+            }
+        }
+        if seen.len() == before {
+            return seen;
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// On small terrains of blocks and cliffs, everything that can be seen from beside
+    /// what is known is seen.
+    #[test]
+    fn all_that_can_be_seen_is_seen(
+        heights in prop::collection::vec(prop_oneof![3 => Just(0u8), 1 => 0u8..32], 25),
+        planner in prop::sample::select(&OWN[..]),
+        seed in 0u64..1000,
+    ) {
+        let terrain = Terrain::from_fn(Extent::new(15, 15), |cell| {
+            Height(heights[(cell.y / 3 * 5 + cell.x / 3) as usize])
+        });
+        let mut scenario = Scenario::new(planner, 2, seed);
+        scenario.limits.ceiling = 20.0;
+        let trace = run(&terrain, &scenario).unwrap();
+        let visible = visible(&terrain, &scenario, trace.starts[0]);
+        prop_assert!(*trace.seen.last().unwrap() as usize >= visible.len(),
+            "{} of {}", trace.seen.last().unwrap(), visible.len());
+        prop_assert_eq!(trace.safety, Default::default());
+    }
+}

@@ -1,0 +1,82 @@
+//! Sharing out frontiers: each robot prefers the frontiers that few rivals are
+//! nearer to, that open onto much unknown, and that nobody announced.
+
+use super::CoordinatedSurvey;
+use crate::cell::Cell;
+use crate::math;
+use crate::point::Point;
+use crate::surface::{Bits, Tile};
+
+/// Tiles whose frontiers are looked at one by one.
+const SHORTLIST: usize = 4;
+
+/// Cost of each rival that is nearer, against a distance of one range.
+// [Bautin2012 MinPos]
+const RANK: f32 = 10.0;
+
+/// Worth of a neighbourhood that is all unknown.
+const OPENNESS: f32 = 4.5;
+
+/// Radius of that neighbourhood, as a share of the range.
+const NEIGHBOURHOOD: f32 = 0.6;
+
+/// Cost of a place that a rival announced, falling off over [`SPREAD`] ranges.
+const ANNOUNCED: f32 = 2.0;
+const SPREAD: f32 = 1.0;
+
+impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
+    /// The frontier with the lowest score.
+    ///
+    /// Cost: every tile with frontiers once, then the frontiers of the best four;
+    /// each against all robots heard of.
+    pub(super) fn own_frontier(&mut self) -> Option<Cell> {
+        let range = self.config.limits.range;
+        let mut shortlist: [Option<(f32, Tile)>; SHORTLIST] = [None; SHORTLIST];
+        let mut work = 0;
+        for tile in self.knowledge.surface().tiles() {
+            work += 1;
+            if self.knowledge.surface().frontiers_in(tile) == 0 {
+                continue;
+            }
+            work += 1;
+            let centre = Point::over(tile.cell(0), 0.0).offset(3.5, 3.5, 0.0);
+            let unknown = self.knowledge.surface().unknown(tile).count_ones() as f32 / 64.0;
+            let mut candidate = Some((self.score(centre, unknown), tile));
+            for place in &mut shortlist {
+                if place.is_none_or(|(score, _)| candidate.is_some_and(|(new, _)| new < score)) {
+                    core::mem::swap(place, &mut candidate);
+                }
+            }
+        }
+        let mut best: Option<(f32, Cell)> = None;
+        for (_, tile) in shortlist.into_iter().flatten() {
+            for bit in Bits(self.knowledge.surface().frontier_cells(tile)) {
+                work += 16;
+                let cell = tile.cell(bit);
+                let at = Point::over(cell, 0.0);
+                let score = self.score(at, self.openness(at, NEIGHBOURHOOD * range));
+                if best.is_none_or(|(least, _)| score < least) {
+                    best = Some((score, cell));
+                }
+            }
+        }
+        self.look_at(work);
+        best.map(|(_, cell)| cell)
+    }
+
+    fn score(&self, at: Point, openness: f32) -> f32 {
+        let range = self.config.limits.range;
+        let distance = self.knowledge.position().plan_distance(at);
+        let (mut rank, mut announced) = (0.0f32, 0.0);
+        for peer in self.knowledge.rivals() {
+            if peer.status.position.plan_distance(at) < distance {
+                rank += 1.0;
+            }
+            if let Some(target) = peer.status.target {
+                let away = Point::over(target, 0.0).plan_distance(at) / (SPREAD * range);
+                announced += math::exp(-0.5 * away * away);
+            }
+        }
+        distance / range + RANK * rank - OPENNESS * openness + ANNOUNCED * announced
+    }
+}

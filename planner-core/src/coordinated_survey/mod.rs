@@ -1,0 +1,198 @@
+//! A fleet that surveys a surface faster than FCAO: pockets first, then a local
+//! choice by CAO's cubic, then frontiers shared out among the robots.
+//!
+//! FCAO loses its time where robots fly to the same frontier, and at the end, where
+//! they return for small holes left behind. Here each robot announces where it goes;
+//! it closes a *pocket*, a hole in known surface, as soon as it is the nearest to it;
+//! and its local model is fitted not only to the past but to probes of the map ahead.
+//! Every decision looks at a bounded neighbourhood, the tile counts, and at most
+//! [`MAX_PEERS`](crate::survey::MAX_PEERS) robots.
+
+mod frontier;
+mod pocket;
+mod swath;
+mod vicinity;
+
+use crate::cell::{Cell, Extent};
+use crate::fcao::History;
+use crate::point::Point;
+use crate::rng::Rng;
+use crate::survey::{
+    Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Status, Stop, Surveyor,
+};
+
+/// Measurements that the local model remembers.
+const HISTORY: usize = 8;
+
+/// Half of a robot's swath is lost at its edges if it flies higher than this share
+/// of its range over ground.
+const CRUISE: f32 = 0.36;
+
+/// How a robot chooses among random local steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// Each candidate is judged on the map: the faster survey in small fleets.
+    #[default]
+    Map,
+    /// Eight probes are judged on the map, and CAO's cubic through them and the past
+    /// judges the candidates: less work.
+    Cubic,
+}
+
+/// Steps without gain near a target after which the robot looks over its edges.
+const NEAR_PATIENCE: u8 = 6;
+
+/// What a fleet agrees on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// The fleet's physics.
+    pub limits: Limits,
+    /// Seed of the fleet's random headings.
+    pub seed: u64,
+    /// How the local step is chosen.
+    pub choice: Choice,
+}
+
+/// The planner of one robot, over a map of `TW`×`TH` tiles.
+#[derive(Clone, Debug)]
+pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
+    config: Config,
+    knowledge: Knowledge<TW, TH>,
+    rng: Rng,
+    history: History<HISTORY>,
+    rescue: Rescue<TW, TH>,
+    target: Option<Cell>,
+    stopped: bool,
+    /// Steps near a target since the last gain.
+    stuck: u8,
+    /// Whether the last step was a local one.
+    local: bool,
+    work: u32,
+}
+
+impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
+    /// Robot `id` of a fleet over a surface of `extent` columns.
+    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+        Ok(Self {
+            config,
+            knowledge: Knowledge::new(extent, config.limits)?,
+            rng: Rng::new(config.seed, id as u64),
+            history: History::new(),
+            rescue: Rescue::new(),
+            target: None,
+            stopped: false,
+            stuck: 0,
+            local: false,
+            work: 0,
+        })
+    }
+
+    /// Height over ground at which the robot flies.
+    fn cruise(&self) -> f32 {
+        let Limits {
+            range,
+            min_altitude,
+            ..
+        } = self.config.limits;
+        min_altitude.max(CRUISE * range)
+    }
+
+    fn look_at(&mut self, number: u32) {
+        self.work = self.work.saturating_add(number);
+    }
+
+    /// Whether the robot has been near its target for a while and gained nothing: it
+    /// hides, behind an edge or on a tower.
+    fn is_stuck(&mut self, gain: f32) -> bool {
+        let here = self.knowledge.position();
+        let near = self.target.is_none_or(|target| {
+            here.plan_distance(Point::over(target, 0.0)) < 0.5 * self.config.limits.range
+        });
+        if gain > 0.0 {
+            self.stuck = 0;
+        } else if near {
+            self.stuck = self.stuck.saturating_add(1);
+        }
+        self.stuck >= NEAR_PATIENCE
+    }
+
+    fn fly_to(&mut self, target: Option<Cell>) -> Option<Action> {
+        self.target = target;
+        self.look_at(29);
+        let goal = Point::over(target?, 0.0);
+        self.knowledge
+            .step_towards(goal, self.cruise())
+            .map(Action::Fly)
+    }
+
+    /// Any allowed flight of one step: the way out of a place where flights are
+    /// refused.
+    fn sidestep(&mut self) -> Action {
+        for _ in 0..16 {
+            let heading = self.rng.angle();
+            let to = self
+                .knowledge
+                .step_along(heading, self.config.limits.step, self.cruise());
+            if self.knowledge.may_fly(to) {
+                return Action::Fly(to);
+            }
+        }
+        Action::Hover
+    }
+}
+
+impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW, TH> {
+    fn knowledge(&self) -> &Knowledge<TW, TH> {
+        &self.knowledge
+    }
+
+    fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
+        &mut self.knowledge
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            position: self.knowledge.position(),
+            target: self.target,
+            stopped: self.stopped,
+        }
+    }
+
+    fn work(&self) -> u32 {
+        self.work
+    }
+
+    fn tick(&mut self) -> Action {
+        self.work = 0;
+        let gain = self.knowledge.settle();
+        self.history
+            .push(self.knowledge.position(), self.knowledge.reward());
+        let surface = self.knowledge.surface();
+        self.stopped = surface.known_columns() > 0 && surface.frontiers() == 0;
+        if self.stopped {
+            self.target = None;
+            return Action::Stop(Stop::Complete);
+        }
+        if self.knowledge.take_blocked() {
+            return self.sidestep();
+        }
+        if self.is_stuck(gain) || self.knowledge.idle() >= PATIENCE {
+            let action = self.rescue.tick(&self.knowledge);
+            self.look_at(self.rescue.work);
+            self.target = self.rescue.target();
+            self.stopped = matches!(action, Action::Stop(_));
+            return action;
+        }
+        if let Some(pocket) = self.nearest_pocket()
+            && let Some(action) = self.fly_to(Some(pocket))
+        {
+            return action;
+        }
+        if let Some(to) = self.best_swath(gain) {
+            self.target = None;
+            return Action::Fly(to);
+        }
+        let frontier = self.own_frontier();
+        self.fly_to(frontier).unwrap_or(Action::Hover)
+    }
+}

@@ -1,0 +1,168 @@
+//! The local choice: the heading along which most unknown surface would be shown.
+
+use heapless::Vec;
+
+use super::vicinity::Vicinity;
+use super::{Choice, CoordinatedSurvey, HISTORY};
+use crate::cao::{Degree, Frame, Model, Sample};
+use crate::math;
+use crate::point::Point;
+
+/// Probed headings.
+const HEADINGS: u8 = 8;
+
+/// A local step is worth it if a probe shows at least this share of what a swath
+/// through unknown surface would.
+const LEAST: f32 = 0.4;
+
+/// After a local step that gained less than this share of 2Rα, the probes are not
+/// trusted: something ahead cannot be seen.
+const LEAST_GAIN: f32 = 0.11;
+
+/// Steps that a probe looks ahead.
+const LOOKAHEAD: u8 = 4;
+
+/// Worth of a step ahead against the one before it.
+const DISCOUNT: f32 = 0.825;
+
+/// Radius of what a robot is taken to see from cruise height, as a share of R.
+const SIGHT: f32 = 0.85;
+
+/// Worth of a column along known surface or the border, beside 1 for any column: a
+/// swath then runs along what is known and leaves no strips behind.
+const RIM: f32 = 4.4;
+
+/// How much the past counts against a probe in the cubic's fit.
+const PAST_WEIGHT: f32 = 0.375;
+
+/// Ridge of that fit, per row.
+const RIDGE: f32 = 1e-3;
+
+/// Random candidates.
+const CANDIDATES: u8 = 48;
+
+/// Rows of the fit: the past and the probes.
+const ROWS: usize = HISTORY + HEADINGS as usize;
+
+impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
+    /// The best step into a swath of unknown surface, if there is one.
+    ///
+    /// Cost: a [`Vicinity`], 64 rows for each rival, 8 probes of 4 discs; then 48
+    /// candidates, each of them 4 discs or 20 terms of the cubic.
+    pub(super) fn best_swath(&mut self, gain: f32) -> Option<Point> {
+        let step = self.config.limits.step;
+        let trusted = gain >= LEAST_GAIN * 2.0 * self.config.limits.range * step;
+        if core::mem::take(&mut self.local) && !trusted {
+            return None;
+        }
+        let vicinity = self.own_vicinity();
+        let phase = self.rng.angle();
+        let mut probes: Vec<Sample, ROWS> = Vec::new();
+        for i in 0..HEADINGS {
+            let heading = phase + core::f32::consts::TAU / f32::from(HEADINGS) * f32::from(i);
+            let at = self.knowledge.step_along(heading, step, self.cruise());
+            if self.knowledge.may_fly(at) {
+                let value = self.shown_along(vicinity, heading);
+                // There are more rows than headings.
+                let _ = probes.push(Sample {
+                    at,
+                    value,
+                    weight: 1.0,
+                });
+            }
+        }
+        self.look_at(u32::from(HEADINGS) * self.disc_rows());
+        if !probes.iter().any(|probe| probe.value >= LEAST) {
+            return None;
+        }
+        let to = match self.config.choice {
+            Choice::Map => self.best_candidate(|robot, heading, _| {
+                robot.look_at(robot.disc_rows());
+                robot.shown_along(vicinity, heading)
+            }),
+            Choice::Cubic => {
+                let model = self.fit(probes)?;
+                self.best_candidate(|_, _, to| model.value(to))
+            }
+        };
+        self.local = to.is_some();
+        to
+    }
+
+    /// The vicinity without what is nearer to others.
+    fn own_vicinity(&mut self) -> Vicinity {
+        let here = self.knowledge.position();
+        let mut vicinity = Vicinity::new(self.knowledge.surface(), here);
+        for peer in self.knowledge.rivals() {
+            vicinity.leave_to(peer.status.position, here);
+        }
+        let rivals = self.knowledge.rivals().count() as u32;
+        self.look_at(512 + 64 * rivals);
+        vicinity
+    }
+
+    /// The cubic through the probes and the past: what J gained before, in the units
+    /// of the probes [Renzaglia2019 eq. 3, 5].
+    fn fit(&mut self, mut rows: Vec<Sample, ROWS>) -> Option<Model> {
+        let step = self.config.limits.step;
+        let area = 2.0 * self.config.limits.range * step;
+        let reward = self.knowledge.reward();
+        for sample in self
+            .history
+            .samples(|before| (before - reward) / area, PAST_WEIGHT)
+        {
+            let _ = rows.push(sample);
+        }
+        self.look_at((ROWS * ROWS) as u32);
+        let frame = Frame {
+            origin: self.knowledge.position(),
+            scale: 1.0 / (step * math::sqrt(6.0)),
+        };
+        Model::fit::<ROWS>(&rows, frame, Degree::Cubic, RIDGE * rows.len() as f32)
+    }
+
+    /// The random allowed step with the highest value [Renzaglia2019 eq. 6, 7], on the
+    /// surface at cruise height instead of the sphere.
+    fn best_candidate(
+        &mut self,
+        mut value: impl FnMut(&mut Self, f32, Point) -> f32,
+    ) -> Option<Point> {
+        let mut best: Option<(f32, Point)> = None;
+        for _ in 0..CANDIDATES {
+            let heading = self.rng.angle();
+            let to = self
+                .knowledge
+                .step_along(heading, self.config.limits.step, self.cruise());
+            let value = value(self, heading, to);
+            if best.is_none_or(|(most, _)| value > most) && self.knowledge.may_fly(to) {
+                best = Some((value, to));
+            }
+        }
+        self.look_at(u32::from(CANDIDATES));
+        best.map(|(_, to)| to)
+    }
+
+    /// What a flight along `heading` would show, 1 being a swath through unknown
+    /// surface far from everything known.
+    fn shown_along(&self, mut vicinity: Vicinity, heading: f32) -> f32 {
+        let here = self.knowledge.position();
+        let step = self.config.limits.step;
+        let radius = SIGHT * self.config.limits.range;
+        let (sin, cos) = math::sin_cos(heading);
+        let (mut value, mut most, mut worth) = (0.0f32, 0.0, 1.0);
+        for ahead in 1..=LOOKAHEAD {
+            let distance = f32::from(ahead) * step;
+            let place = here.offset(distance * cos, distance * sin, 0.0);
+            let shown = vicinity.take_disc(place, radius);
+            value += worth * (shown.columns as f32 + RIM * shown.rim as f32);
+            most += worth * 2.0 * radius * step;
+            worth *= DISCOUNT;
+        }
+        value / most
+    }
+
+    /// Rows that [`shown_along`](Self::shown_along) counts, for the record of work.
+    fn disc_rows(&self) -> u32 {
+        u32::from(LOOKAHEAD) * (2.0 * SIGHT * self.config.limits.range) as u32
+    }
+}

@@ -1,0 +1,243 @@
+//! FCAO as published: local optimisation by CAO, and the closest frontier when that
+//! is stuck [Renzaglia2019 Algorithm 1].
+//!
+//! The paper leaves points open: each reading taken here is named where it is applied.
+
+mod history;
+
+pub(crate) use history::History;
+
+use crate::cao::{Degree, Frame, Model};
+use crate::cell::{Cell, Extent};
+use crate::point::Point;
+use crate::rng::Rng;
+use crate::survey::{
+    Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Status, Stop, Surveyor,
+};
+
+/// Reading: a step is a local optimum if it gains at most this share of the area
+/// that a straight step newly covers, 2Rα.
+const LOCAL_OPTIMUM: f32 = 0.5;
+
+/// Reading: ridge of the fit, per measurement.
+const RIDGE: f32 = 1e-4;
+
+/// Fewer measurements than this are not fitted.
+const FEWEST: usize = 4;
+
+/// What a fleet that runs FCAO agrees on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Config {
+    /// The fleet's physics.
+    pub limits: Limits,
+    /// Degree of the local model; cubic as published.
+    pub degree: Degree,
+    /// Number M of random candidates in each step.
+    pub candidates: u16,
+    /// Seed of the fleet's random candidates.
+    pub seed: u64,
+}
+
+impl Config {
+    /// As published, with 100 candidates.
+    pub const fn new(limits: Limits, seed: u64) -> Self {
+        Self {
+            limits,
+            degree: Degree::Cubic,
+            candidates: 100,
+            seed,
+        }
+    }
+}
+
+/// FCAO on one robot, over a map of `TW`×`TH` tiles, with a history of `H`
+/// measurements, the current one included.
+#[derive(Clone, Debug)]
+pub struct Fcao<const TW: usize, const TH: usize, const H: usize = 8> {
+    config: Config,
+    knowledge: Knowledge<TW, TH>,
+    rng: Rng,
+    history: History<H>,
+    rescue: Rescue<TW, TH>,
+    /// The frontier that the robot flies to; `None` while it optimises locally.
+    target: Option<Cell>,
+    stopped: bool,
+    work: u32,
+}
+
+impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
+    /// Robot `id` of a fleet over a surface of `extent` columns.
+    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+        Ok(Self {
+            config,
+            knowledge: Knowledge::new(extent, config.limits)?,
+            rng: Rng::new(config.seed, id as u64),
+            history: History::new(),
+            rescue: Rescue::new(),
+            target: None,
+            stopped: false,
+            work: 0,
+        })
+    }
+
+    /// Gain of a step that is too little to go on locally.
+    fn least_gain(&self) -> f32 {
+        LOCAL_OPTIMUM * 2.0 * self.config.limits.range * self.config.limits.step
+    }
+
+    /// CAO's step: the best of the random candidates by the local model, or `None`
+    /// if staying is better [Renzaglia2019 function CAO].
+    fn optimise(&mut self) -> Option<Action> {
+        let here = self.knowledge.position();
+        let model = (self.history.len() >= FEWEST)
+            .then(|| self.fit(here))
+            .flatten();
+        let Some(model) = model else {
+            return Some(self.wander());
+        };
+        let mut best: Option<(f32, Point)> = None;
+        for _ in 0..self.config.candidates {
+            let to = self.candidate(here);
+            if !self.knowledge.may_fly(to) {
+                continue;
+            }
+            let value = model.value(to);
+            // [Renzaglia2019 eq. 7]
+            if best.is_none_or(|(most, _)| value > most) {
+                best = Some((value, to));
+            }
+        }
+        match best {
+            Some((value, _)) if value <= model.value(here) => None,
+            Some((_, to)) => Some(Action::Fly(to)),
+            None => Some(self.climb()),
+        }
+    }
+
+    // [Renzaglia2019 eq. 5]; reading: centred on the robot, scaled to the history's
+    // reach, J less its mean.
+    fn fit(&mut self, here: Point) -> Option<Model> {
+        self.work = self.work.saturating_add((H * H) as u32);
+        let reach = self.history.reach(here).max(self.config.limits.step);
+        let frame = Frame {
+            origin: here,
+            scale: 1.0 / reach,
+        };
+        let ridge = RIDGE * self.history.len() as f32;
+        Model::fit::<H>(
+            self.history.centred().as_slice(),
+            frame,
+            self.config.degree,
+            ridge,
+        )
+    }
+
+    /// A random point of the sphere of one step [Renzaglia2019 eq. 6].
+    fn candidate(&mut self, here: Point) -> Point {
+        self.work = self.work.saturating_add(1);
+        let (x, y, z) = self.rng.direction();
+        let step = self.config.limits.step;
+        here.offset(step * x, step * y, step * z)
+    }
+
+    /// The first allowed candidate.
+    fn wander(&mut self) -> Action {
+        let here = self.knowledge.position();
+        for _ in 0..self.config.candidates {
+            let to = self.candidate(here);
+            if self.knowledge.may_fly(to) {
+                return Action::Fly(to);
+            }
+        }
+        self.climb()
+    }
+
+    fn climb(&self) -> Action {
+        let up = self.knowledge.climb();
+        if self.knowledge.may_fly(up) {
+            Action::Fly(up)
+        } else {
+            Action::Hover
+        }
+    }
+
+    /// Flies to the closest frontier [Renzaglia2019 §4.2]. Reading: low enough that
+    /// it comes into range, and another one as soon as this one is none any more.
+    fn fly_to_frontier(&mut self) -> Action {
+        let here = self.knowledge.position();
+        let surface = self.knowledge.surface();
+        if !self
+            .target
+            .is_some_and(|target| surface.is_frontier(target))
+        {
+            let (target, work) = self.knowledge.closest_frontier(here, |_| true);
+            self.target = target;
+            self.work = self.work.saturating_add(work);
+        }
+        let Limits {
+            range,
+            min_altitude,
+            ..
+        } = self.config.limits;
+        self.work = self.work.saturating_add(29);
+        self.target
+            .and_then(|target| {
+                let goal = Point::over(target, 0.0);
+                self.knowledge
+                    .step_towards(goal, min_altitude.max(range / 2.0))
+            })
+            .map_or(Action::Hover, Action::Fly)
+    }
+}
+
+impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao<TW, TH, H> {
+    fn knowledge(&self) -> &Knowledge<TW, TH> {
+        &self.knowledge
+    }
+
+    fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
+        &mut self.knowledge
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            position: self.knowledge.position(),
+            target: self.target,
+            stopped: self.stopped,
+        }
+    }
+
+    fn work(&self) -> u32 {
+        self.work
+    }
+
+    // [Renzaglia2019 Algorithm 1]
+    fn tick(&mut self) -> Action {
+        self.work = 0;
+        let gain = self.knowledge.settle();
+        self.history
+            .push(self.knowledge.position(), self.knowledge.reward());
+        let surface = self.knowledge.surface();
+        self.stopped = surface.known_columns() > 0 && surface.frontiers() == 0;
+        if self.stopped {
+            return Action::Stop(Stop::Complete);
+        }
+        if self.knowledge.take_blocked() {
+            return self.wander();
+        }
+        if self.knowledge.idle() >= PATIENCE {
+            let action = self.rescue.tick(&self.knowledge);
+            self.work = self.work.saturating_add(self.rescue.work);
+            self.target = self.rescue.target();
+            self.stopped = matches!(action, Action::Stop(_));
+            return action;
+        }
+        if gain > self.least_gain() {
+            self.target = None;
+            if let Some(action) = self.optimise() {
+                return action;
+            }
+        }
+        self.fly_to_frontier()
+    }
+}

@@ -1,0 +1,188 @@
+//! The columns that a robot saw first in its last few steps, and how many robots
+//! saw them first together with it.
+
+use crate::cell::Cell;
+use crate::point::Point;
+use crate::surface::{Bits, Tile};
+
+/// Tiles along one side of the window around a robot.
+const WINDOW: usize = 4;
+
+/// Longest sensor range for which the window covers every column in range, however
+/// the robot stands on the tiles.
+pub const MAX_RANGE: f32 = 12.0;
+
+/// Steps for which own discoveries are repeated to the others, so that a lost message
+/// does little harm.
+pub(super) const REPEATS: usize = 4;
+
+/// A layer of bits on the tiles around a robot.
+#[derive(Clone, Copy, Debug)]
+struct Window {
+    /// The north-west tile, in tiles; may lie outside the map.
+    origin: (i16, i16),
+    words: [[u64; WINDOW]; WINDOW],
+}
+
+impl Window {
+    const EMPTY: Self = Self {
+        origin: (0, 0),
+        words: [[0; WINDOW]; WINDOW],
+    };
+
+    fn word_mut(&mut self, tile: Tile) -> Option<&mut u64> {
+        let x = usize::try_from(i16::from(tile.x) - self.origin.0).ok()?;
+        let y = usize::try_from(i16::from(tile.y) - self.origin.1).ok()?;
+        self.words.get_mut(y)?.get_mut(x)
+    }
+
+    fn word(mut self, tile: Tile) -> u64 {
+        self.word_mut(tile).map_or(0, |word| *word)
+    }
+
+    /// The tiles inside the map with a bit set.
+    fn tiles(self) -> impl Iterator<Item = (Tile, u64)> {
+        self.words
+            .into_iter()
+            .enumerate()
+            .flat_map(move |(y, row)| {
+                row.into_iter().enumerate().filter_map(move |(x, word)| {
+                    let x = u8::try_from(self.origin.0.saturating_add(x as i16)).ok()?;
+                    let y = u8::try_from(self.origin.1.saturating_add(y as i16)).ok()?;
+                    (word != 0).then_some((Tile { x, y }, word))
+                })
+            })
+    }
+}
+
+/// What this robot saw first, by step, the current one in front; and for the
+/// current step, per column, how many others saw it first too.
+#[derive(Clone, Debug)]
+pub(super) struct News {
+    steps: [Window; REPEATS],
+    /// Bit k of the number of others, in the words of plane k: enough for 15.
+    others: [Window; 4],
+}
+
+impl News {
+    pub(super) const fn new() -> Self {
+        Self {
+            steps: [Window::EMPTY; REPEATS],
+            others: [Window::EMPTY; 4],
+        }
+    }
+
+    /// Begins a step of a robot at `at`.
+    pub(super) fn begin(&mut self, at: Point) {
+        let cell = at.cell();
+        let reach = MAX_RANGE as i16;
+        let origin = (
+            cell.x.saturating_sub(reach) >> 3,
+            cell.y.saturating_sub(reach) >> 3,
+        );
+        let fresh = Window {
+            origin,
+            ..Window::EMPTY
+        };
+        self.steps.rotate_right(1);
+        if let Some(current) = self.steps.first_mut() {
+            *current = fresh;
+        }
+        self.others = [fresh; 4];
+    }
+
+    /// The robot itself sees `cell` for the first time.
+    pub(super) fn add(&mut self, cell: Cell) {
+        if let Some(word) = Tile::of(cell)
+            .and_then(|tile| self.steps.first_mut().and_then(|step| step.word_mut(tile)))
+        {
+            *word |= 1 << Tile::bit(cell);
+        }
+    }
+
+    /// Another robot saw `cells` of `tile` first in this same step.
+    pub(super) fn share(&mut self, tile: Tile, cells: u64) {
+        let mut carry = cells & self.steps.first().map_or(0, |step| step.word(tile));
+        for plane in &mut self.others {
+            if let Some(word) = plane.word_mut(tile) {
+                let overflow = *word & carry;
+                *word ^= carry;
+                carry = overflow;
+            }
+        }
+    }
+
+    /// The reward of this step: Σ 1/|e(s)| over the columns s that this robot is
+    /// among the first to see.
+    // [Renzaglia2019 eq. 1]
+    pub(super) fn reward(&self) -> f32 {
+        let Some(own) = self.steps.first() else {
+            return 0.0;
+        };
+        let mut reward = 0.0;
+        for (tile, word) in own.tiles() {
+            for bit in Bits(word) {
+                let others = self.others.iter().rev().fold(0u8, |number, plane| {
+                    number << 1 | (plane.word(tile) >> bit & 1) as u8
+                });
+                reward += 1.0 / (1.0 + f32::from(others));
+            }
+        }
+        reward
+    }
+
+    /// Tiles with own discoveries of the step `age` steps ago, and which cells.
+    pub(super) fn tiles(&self, age: usize) -> impl Iterator<Item = (Tile, u64)> + use<> {
+        self.steps
+            .get(age)
+            .copied()
+            .unwrap_or(Window::EMPTY)
+            .tiles()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_seen_by_n_robots_is_worth_one_nth_to_each() {
+        let mut news = News::new();
+        news.begin(Point::new(20.0, 20.0, 5.0));
+        let cell = Cell::new(12, 27);
+        let tile = Tile::of(cell).unwrap();
+        news.add(cell);
+        for others in 1..=15u8 {
+            news.share(tile, !0);
+            assert_eq!(news.reward(), 1.0 / f32::from(others + 1));
+        }
+        assert_eq!(
+            news.tiles(0).collect::<std::vec::Vec<_>>(),
+            [(tile, 1 << Tile::bit(cell))]
+        );
+        news.begin(Point::new(21.0, 20.0, 5.0));
+        assert_eq!(news.reward(), 0.0);
+        assert_eq!(news.tiles(1).count(), 1);
+    }
+
+    /// Every column within [`MAX_RANGE`] has a place, wherever the robot stands.
+    #[test]
+    fn the_window_covers_the_range() {
+        for x in 12..40 {
+            let at = Point::new(x as f32 + 0.99, 30.01, 5.0);
+            let mut news = News::new();
+            news.begin(at);
+            let reach = MAX_RANGE as i16;
+            let cells = [
+                Cell::new(x - reach, 30),
+                Cell::new(x + reach, 30),
+                Cell::new(x, 30 - reach),
+                Cell::new(x, 30 + reach),
+            ];
+            for cell in cells {
+                news.add(cell);
+            }
+            assert_eq!(news.reward(), 4.0);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! What was last heard of the other robots.
+
+use super::Status;
+
+/// Number of other robots that are remembered; of more, the latest heard.
+pub const MAX_PEERS: usize = 15;
+
+/// Steps after which a silent robot is forgotten.
+pub const PEER_MEMORY: u8 = 15;
+
+/// Another robot as last heard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peer {
+    /// Its name.
+    pub id: u8,
+    /// What it said.
+    pub status: Status,
+    /// Steps since.
+    pub age: u8,
+}
+
+/// At most [`MAX_PEERS`] robots, each once.
+#[derive(Clone, Debug)]
+pub(crate) struct Peers([Option<Peer>; MAX_PEERS]);
+
+impl Peers {
+    pub(super) const fn new() -> Self {
+        Self([None; MAX_PEERS])
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = &Peer> {
+        self.0.iter().flatten()
+    }
+
+    /// Replaces what `id` said before, or else takes an empty or the oldest place.
+    pub(super) fn hear(&mut self, id: u8, status: Status) {
+        let staleness = |place: &Option<Peer>| match place {
+            Some(peer) if peer.id == id => u16::MAX,
+            Some(peer) => u16::from(peer.age),
+            None => u16::MAX - 1,
+        };
+        if let Some(place) = self.0.iter_mut().max_by_key(|place| staleness(place)) {
+            *place = Some(Peer { id, status, age: 0 });
+        }
+    }
+
+    /// One step passes.
+    pub(super) fn age(&mut self) {
+        for place in &mut self.0 {
+            *place = place
+                .map(|peer| Peer {
+                    age: peer.age + 1,
+                    ..peer
+                })
+                .filter(|peer| peer.age <= PEER_MEMORY);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::point::Point;
+
+    fn at(x: f32) -> Status {
+        Status {
+            position: Point::new(x, 0.0, 0.0),
+            target: None,
+            stopped: false,
+        }
+    }
+
+    #[test]
+    fn remembers_each_robot_once_and_the_latest_of_many() {
+        let mut peers = Peers::new();
+        for id in 0..20 {
+            peers.hear(id, at(0.0));
+            peers.hear(id, at(1.0));
+            if id == 9 {
+                peers.age();
+            }
+        }
+        assert_eq!(peers.iter().count(), MAX_PEERS);
+        assert!(peers.iter().all(|peer| peer.status == at(1.0)));
+        assert!((10..20).all(|id| peers.iter().any(|peer| peer.id == id)));
+        for _ in 0..PEER_MEMORY {
+            peers.age();
+        }
+        assert_eq!(peers.iter().count(), 10);
+        peers.age();
+        assert_eq!(peers.iter().count(), 0);
+    }
+}

@@ -242,7 +242,10 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let bonus = self.near.load(&self.around, &mut self.work);
         let mine = if let Some(bonus) = &bonus {
             let others = self.others.exploring();
-            let others = others.map(|other| (other.position, other.id < id));
+            let others = others.flat_map(|other| {
+                let is_lower = other.id < id;
+                other.whereabouts(now).map(move |cell| (cell, is_lower))
+            });
             self.near
                 .best(&self.around, &aim, bonus, others, &mut self.work)
         } else {

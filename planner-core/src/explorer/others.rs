@@ -13,8 +13,20 @@ pub const MAX_OTHERS: usize = 15;
 pub(crate) struct Other {
     pub(crate) id: RobotId,
     pub(crate) position: Cell,
+    goal: Option<Cell>,
     has_stopped: bool,
     heard_at: u32,
+}
+
+impl Other {
+    /// Where the robot may be: where it was heard last, and unless that was just
+    /// now, where it was going. (Goals of robots that are heard all the time only
+    /// keep others away from frontiers that they may pass first.)
+    pub(crate) fn whereabouts(&self, now: u32) -> impl Iterator<Item = Cell> + use<> {
+        let is_fresh = now.saturating_sub(self.heard_at) <= 1;
+        let goal = self.goal.filter(|_| !is_fresh);
+        [Some(self.position), goal].into_iter().flatten()
+    }
 }
 
 /// The robots heard of lately, by id.
@@ -33,6 +45,7 @@ impl Others {
         let heard = Other {
             id,
             position: status.position,
+            goal: status.goal,
             has_stopped: status.activity == Activity::Stopped,
             heard_at: now,
         };

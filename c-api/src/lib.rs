@@ -49,15 +49,12 @@ pub extern "C" fn planner_create(
 ) -> PlannerResult {
     answer(|| {
         let config = *input(config)?;
-        if config.range == 0 {
-            return Err(PlannerResult::Range);
-        }
         let extent = Extent::new(config.width, config.height);
         let start = Cell::new(config.start.x, config.start.y);
         if !extent.contains(start) {
             return Err(PlannerResult::Extent);
         }
-        let mut explorer = Config::new(config.range);
+        let mut explorer = Config::new();
         explorer.link.cell_mm = config.cell_mm;
         explorer.link.origin_mm = (config.origin_x_mm, config.origin_y_mm);
         explorer.link.bytes_per_tick = config.bytes_per_tick;

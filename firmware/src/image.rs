@@ -33,12 +33,7 @@ fn main() -> ! {
 fn run() -> Result<Ending, fmt::Error> {
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
     let robot = ROBOT.take();
-    if let Err(error) = robot.reset(
-        Config::new(RANGE),
-        RobotId(0),
-        WORLD.extent(),
-        WORLD.start(),
-    ) {
+    if let Err(error) = robot.reset(Config::new(), RobotId(0), WORLD.extent(), WORLD.start()) {
         writeln!(out, "error: {error}")?;
         return Ok(Ending::Failure);
     }

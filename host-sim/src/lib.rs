@@ -11,7 +11,9 @@
 pub mod chip;
 mod coverage;
 pub mod draw;
+pub mod experiments;
 pub mod fleet;
+pub mod live;
 pub mod measured;
 pub mod medium;
 pub mod peers;

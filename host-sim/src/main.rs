@@ -21,8 +21,19 @@ enum Command {
     /// Exit status: as of `explore`.
     #[cfg(unix)]
     Firmware(command::Firmware),
+    /// Run planners in many worlds and compare them with a reference, in pairs.
+    Compare(command::Compare),
+    /// Draw the figures of the papers anew, with a page that shows them.
+    Figures(command::Figures),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
+    /// Serve a map to robots that are processes of their own.
+    ///
+    /// Exit status: 0 every reachable cell was seen and every robot has stopped,
+    /// 1 something was left, 2 bad input.
+    World(command::World),
+    /// Be one robot in a served world; talks to the others by UDP.
+    Robot(command::Robot),
 }
 
 fn main() -> ExitCode {
@@ -30,7 +41,11 @@ fn main() -> ExitCode {
         Command::Explore(explore) => explore.run(),
         #[cfg(unix)]
         Command::Firmware(firmware) => firmware.run(),
+        Command::Compare(compare) => compare.run(),
+        Command::Figures(figures) => figures.run(),
         Command::Generate(generate) => generate.run(),
+        Command::World(world) => world.run(),
+        Command::Robot(robot) => robot.run(),
     };
     done.unwrap_or_else(|error| {
         eprintln!("error: {error}");

@@ -11,7 +11,7 @@ use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Closest, Greedy, PaperMinPos, Peer, StrongMinPos};
+use crate::peers::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -35,6 +35,8 @@ pub enum PlannerKind {
     #[value(name = "minpos-strong")]
     #[serde(rename = "minpos-strong")]
     MinPosStrong,
+    /// Brick & Mortar with long range vision: closes what nobody needs any more.
+    Bmilrv,
 }
 
 /// What a robot starts with.
@@ -42,8 +44,6 @@ pub enum PlannerKind {
 pub struct Setup {
     /// Its number.
     pub id: RobotId,
-    /// How far it sees, in cells.
-    pub range: u8,
     /// Size of the grid.
     pub extent: Extent,
     /// Where it stands.
@@ -56,7 +56,7 @@ impl PlannerKind {
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
-        let Setup { range, link, .. } = setup;
+        let Setup { link, .. } = setup;
         let local_frontiers = |second_chance| {
             PlannerConfig::LocalFrontiers(local_frontiers::Config {
                 second_chance,
@@ -67,11 +67,11 @@ impl PlannerKind {
         match self {
             Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config {
                 link,
-                ..explorer::Config::new(range)
+                ..explorer::Config::new()
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),
             Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
-            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong => None,
+            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong | Self::Bmilrv => None,
         }
     }
 
@@ -91,7 +91,6 @@ impl PlannerKind {
             extent,
             start,
             link,
-            ..
         } = setup;
         Ok(match self {
             Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {
@@ -102,6 +101,10 @@ impl PlannerKind {
             Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
             Self::MinPosStrong => {
                 Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
+            }
+            Self::Bmilrv => {
+                let marks = Marks::new(extent, start);
+                Box::new(Bmilrv::new(marks, id, extent, start)?)
             }
         })
     }

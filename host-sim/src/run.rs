@@ -1,18 +1,21 @@
 //! From a scenario to what happened.
 
+mod book;
+
 use std::sync::Arc;
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
-use planner_core::{Cell, Extent, Map, Planner, Stop, sight};
+use planner_core::{Cell, Extent, Planner, Stop, sight};
 use thiserror::Error;
 
-use crate::coverage::Coverage;
-use crate::fleet::{Deed, Faults, Fleet, Robot, Rules, Sent, Violation};
+use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
 use crate::medium::{AirFaults, MediumKind};
+use crate::peers::{Bmilrv, Marks};
 use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
-use crate::trace::{Record, Trace};
+use crate::trace::Trace;
 use crate::world::{Reachable, World};
+use book::Book;
 
 /// Everything that a run follows from. The same scenario gives the same run on
 /// every machine.
@@ -89,7 +92,7 @@ impl Scenario {
     /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
     /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
-        let max_ticks = default_max_ticks(&world.reachable(&starts));
+        let max_ticks = default_max_ticks(&world.reachable(&starts), planner);
         Self {
             world,
             starts,
@@ -146,11 +149,16 @@ impl Scenario {
     }
 }
 
-/// Ticks after which a run is given up if nobody says otherwise: eight for each
-/// cell that can be reached, and a thousand. One robot that walks to every cell
-/// and back needs two.
-pub fn default_max_ticks(reachable: &Reachable) -> u32 {
-    1000 + 8 * reachable.count()
+/// Ticks after which a run is given up if nobody says otherwise: a thousand, and
+/// eight for each cell that can be reached, of which one robot that walks to
+/// every cell and back needs two. BMILRV may go round many loops many times: a
+/// hundred for each cell.
+pub fn default_max_ticks(reachable: &Reachable, planner: PlannerKind) -> u32 {
+    let each = match planner {
+        PlannerKind::Bmilrv => 100,
+        _ => 8,
+    };
+    1000 + each * reachable.count()
 }
 
 /// What happened in a run.
@@ -174,6 +182,8 @@ pub struct Outcome {
     pub max_work_per_tick: u32,
     /// Reachable cells seen by somebody, tick by tick.
     pub coverage: Vec<u32>,
+    /// Costs of the ways that were assigned.
+    pub assignments: Assignments,
     /// Robot by robot.
     pub robots: Vec<RobotOutcome>,
     /// Moves into obstacles. Anything but none is a bug of a planner.
@@ -203,7 +213,48 @@ pub struct RobotOutcome {
     pub alive: bool,
 }
 
+/// The costs of assignments by both criteria of [Bautin2011]. The robots that get
+/// a way in the same tick make up one assignment; a cost is the length of a way
+/// in steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Assignments {
+    /// Ticks in which a robot was assigned a way.
+    pub count: u32,
+    /// Criterion 1, summed over assignments: the sum of costs.
+    pub sum: u64,
+    /// Criterion 2, summed over assignments: the largest cost.
+    pub largest: u64,
+}
+
+impl Assignments {
+    fn add(&mut self, costs: impl Iterator<Item = u32> + Clone) {
+        if let Some(largest) = costs.clone().max() {
+            self.count += 1;
+            self.sum += costs.map(u64::from).sum::<u64>();
+            self.largest += u64::from(largest);
+        }
+    }
+
+    /// Mean of criterion 1; `None` if nothing was assigned.
+    pub fn mean_sum(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum as f64 / f64::from(self.count))
+    }
+
+    /// Mean of criterion 2; `None` if nothing was assigned.
+    pub fn mean_largest(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.largest as f64 / f64::from(self.count))
+    }
+}
+
 impl Outcome {
+    /// Moves that anybody could have made when the share `share` (0 to 1) of
+    /// the reachable cells had been seen; `None` if that never was.
+    pub fn ticks_to_share(&self, share: f64) -> Option<u32> {
+        let enough = share * f64::from(self.reachable_cells);
+        let reached = |&seen: &u32| f64::from(seen) >= enough;
+        Some(self.coverage.iter().position(reached)? as u32)
+    }
+
     /// Whether every reachable cell was seen by somebody, without a violation.
     pub fn is_complete(&self) -> bool {
         self.ticks_to_seen.is_some() && self.violations.is_empty()
@@ -334,11 +385,19 @@ fn fleet_on<const TW: usize, const TH: usize>(
         ..LinkConfig::new()
     };
     let (host, kind) = (host.clone(), scenario.planner);
-    let (range, extent) = (scenario.range, scenario.world.extent());
-    let build = Box::new(move |id, start| {
+    let extent = scenario.world.extent();
+    // Robots that work by marks share them, and meet where the first one starts.
+    let marks = match (kind, scenario.starts.first()) {
+        (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
+        _ => None,
+    };
+    let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
+        if let Some(marks) = &marks {
+            let robot = Bmilrv::new(marks.clone(), id, extent, start);
+            return Box::new(robot.expect("the compiled size holds the world"));
+        }
         let setup = Setup {
             id,
-            range,
             extent,
             start,
             link,
@@ -386,154 +445,4 @@ fn compiled_on<const TW: usize, const TH: usize>(
         }
     }
     book.close(scenario, &fleet)
-}
-
-/// What is written down while a run goes on.
-struct Book {
-    sensor: Arc<Sensor>,
-    reachable: Reachable,
-    coverage: Coverage,
-    looked_from: Vec<Option<Cell>>,
-    outcome: Outcome,
-    records: Option<Vec<Record>>,
-}
-
-impl Book {
-    fn new(scenario: &Scenario, sensor: Arc<Sensor>, trace: bool) -> Self {
-        let robots = scenario.starts.len();
-        let reachable = scenario.world.reachable(&scenario.starts);
-        let outcome = Outcome {
-            ticks: 0,
-            ticks_to_seen: None,
-            ticks_to_stopped: None,
-            reachable_cells: reachable.count(),
-            seen_cells: 0,
-            shared_cells: 0,
-            max_work_per_tick: 0,
-            coverage: Vec::new(),
-            robots: vec![
-                RobotOutcome {
-                    steps: 0,
-                    blocked_steps: 0,
-                    cells_known: 0,
-                    cells_missed: 0,
-                    cells_unheard: 0,
-                    work: 0,
-                    sent: Sent::default(),
-                    stop: None,
-                    alive: true,
-                };
-                robots
-            ],
-            violations: Vec::new(),
-        };
-        Self {
-            coverage: Coverage::new(&scenario.world, &reachable, robots),
-            sensor,
-            reachable,
-            looked_from: vec![None; robots],
-            outcome,
-            records: trace.then(Vec::new),
-        }
-    }
-
-    /// Takes down the last tick.
-    fn note<const TW: usize, const TH: usize>(&mut self, fleet: &Fleet<TW, TH>) {
-        let tick = fleet.ticks() - 1;
-        for (index, robot) in fleet.robots().iter().enumerate() {
-            let Some(step) = robot.step else { continue };
-            if self.looked_from[index] != Some(step.at) {
-                self.looked_from[index] = Some(step.at);
-                self.coverage.look(index, self.sensor.view(step.at));
-            }
-            let noted = &mut self.outcome.robots[index];
-            noted.work += u64::from(step.work);
-            noted.sent.frames += step.sent.frames;
-            noted.sent.bytes += step.sent.bytes;
-            noted.stop = None;
-            match step.deed {
-                Deed::Moved(_) => noted.steps += 1,
-                Deed::Blocked(_) => noted.blocked_steps += 1,
-                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded | Deed::Waited => {}
-                Deed::Stopped(stop) => noted.stop = Some(stop),
-            }
-            let most = &mut self.outcome.max_work_per_tick;
-            *most = step.work.max(*most);
-            if let Some(records) = &mut self.records {
-                records.push(Record::new(tick, robot, step));
-            }
-        }
-        let outcome = &mut self.outcome;
-        outcome.ticks = fleet.ticks();
-        outcome.seen_cells = self.coverage.seen_cells();
-        outcome.coverage.push(outcome.seen_cells);
-        if outcome.seen_cells == outcome.reachable_cells {
-            outcome.ticks_to_seen.get_or_insert(tick);
-        }
-        if fleet.has_stopped() {
-            outcome.ticks_to_stopped.get_or_insert(tick);
-        }
-    }
-
-    fn progress(&self) -> Progress {
-        Progress {
-            ticks: self.outcome.ticks,
-            seen_cells: self.outcome.seen_cells,
-            reachable_cells: self.outcome.reachable_cells,
-        }
-    }
-
-    fn close<const TW: usize, const TH: usize>(
-        mut self,
-        scenario: &Scenario,
-        fleet: &Fleet<TW, TH>,
-    ) -> (Outcome, Option<Trace>) {
-        self.outcome.shared_cells = self.coverage.shared_cells();
-        self.outcome.violations = fleet.violations().to_vec();
-        let unheard = unheard(fleet);
-        for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
-            let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
-            noted.alive = robot.alive;
-            noted.cells_known = robot.planner.map().known_cells();
-            noted.cells_unheard = unheard[usize::from(robot.id.0)];
-            noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
-        }
-        let trace = self.records.map(|records| Trace::new(scenario, records));
-        (self.outcome, trace)
-    }
-}
-
-/// Cells that `robot` could reach and does not know.
-fn missed<const TW: usize, const TH: usize>(
-    world: &World,
-    all: &Reachable,
-    robot: &Robot<TW, TH>,
-    start: Cell,
-) -> u32 {
-    let lacks = |cell: &Cell| !robot.planner.map().is_known(*cell);
-    if all.cells().any(|cell| lacks(&cell)) {
-        world.reachable(&[start]).cells().filter(lacks).count() as u32
-    } else {
-        0
-    }
-}
-
-/// Robot by robot, the cells that it lacks and another one alive knows.
-fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> {
-    let alive = || fleet.robots().iter().filter(|robot| robot.alive);
-    let mut all: Option<Box<Map<TW, TH>>> = None;
-    for robot in alive() {
-        match &mut all {
-            None => all = Some(Box::new(robot.planner.map().clone())),
-            Some(all) => {
-                all.join(robot.planner.map());
-            }
-        }
-    }
-    let known = all.map_or(0, |all| all.known_cells());
-    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
-    let robots = fleet.robots().iter();
-    robots
-        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
-        .collect()
 }

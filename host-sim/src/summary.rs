@@ -168,12 +168,12 @@ fn why_maps_differ(scenario: &Scenario, outcome: &Outcome) -> &'static str {
     let Scenario { air, faults, .. } = scenario;
     if scenario.sync == 0 || scenario.medium == MediumKind::Radio && scenario.byte_budget == 0 {
         "the robots never spoke"
-    } else if outcome.ticks_to_stopped.is_none() {
-        "the run ended before every robot had stopped"
     } else if air.reach != Reach::Everywhere || !air.partitions.is_empty() {
         "robots were out of each other's reach when the last one stopped"
     } else if scenario.loss > 0.0 || air.corruption > 0.0 {
         "messages were lost, and had not been repeated when the last robot stopped"
+    } else if outcome.ticks_to_stopped.is_none() {
+        "the run ended before every robot had stopped"
     } else if air.delay > 0 || scenario.sync > 1 {
         "the last messages were still to come when the last robot stopped"
     } else if !faults.deaths.is_empty() || !faults.restarts.is_empty() {

@@ -188,6 +188,9 @@ fn bad_options_are_named() {
     bad(&["--robots", "0"], &["--robots"]);
     bad(&["--range", "16"], &["--range", "1..=15"]);
     bad(&["--loss", "60"], &["--loss", "0 (nothing) to 1"]);
+    bad(&["--corrupt", "2"], &["--corrupt", "0 (nothing) to 1"]);
+    bad(&["--radio-range", "far"], &["--radio-range", "all, sight"]);
+    bad(&["--medium", "wire"], &["--medium", "ideal", "radio"]);
     bad(&["--planner", "best"], &["--planner", "explorer"]);
 }
 

@@ -180,6 +180,12 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// rows of the decision window.
     fn work(&self) -> u32;
 
+    /// Steps to the goal that the last [`tick`](Self::tick) assigned. `None`: it
+    /// assigned none, or this planner does not tell.
+    fn assignment(&self) -> Option<u32> {
+        None
+    }
+
     /// What the robot is about to do, for an [`exchange`](crate::explorer::exchange)
     /// with a robot in its way. `None`: this planner does not exchange roles.
     fn role(&self) -> Option<Role> {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{cargo, command};
-use crate::{c_interface, documents, firmware, install};
+use crate::{c_interface, documents, firmware, fuzz, install};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -164,6 +164,11 @@ const CHECKS: &[Check] = &[
         name: "miri",
         title: "planner-core's unit tests under Miri",
         run: miri,
+    },
+    Check {
+        name: "fuzz",
+        title: "each fuzz target for a short while",
+        run: || fuzz::run(20),
     },
 ];
 

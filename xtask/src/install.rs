@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::shell::{Command, command};
 
-/// The toolchain that Miri comes with.
+/// The toolchain that Miri and the sanitizers come with.
 pub(crate) const NIGHTLY: &str = "nightly";
 
 /// The emulator of the chip.
@@ -27,6 +27,23 @@ pub(crate) fn target(triple: &str) -> Result<()> {
         return Ok(());
     }
     or_say(rustup().args(["add", triple]))
+}
+
+/// The nightly toolchain and `cargo fuzz`. Compiling it takes a minute or two.
+pub(crate) fn cargo_fuzz() -> Result<()> {
+    let toolchains = command("rustup").args(["toolchain", "list"]).output()?;
+    if !toolchains
+        .stdout
+        .lines()
+        .any(|line| line.starts_with(NIGHTLY))
+    {
+        or_say(command("rustup").args(["toolchain", "install", NIGHTLY, "--profile=minimal"]))?;
+    }
+    let version = command("cargo").args(["fuzz", "--version"]).output()?;
+    if version.success() {
+        return Ok(());
+    }
+    or_say(command("cargo").args(["install", "cargo-fuzz", "--locked"]))
 }
 
 /// Miri, with the sources that it interprets.

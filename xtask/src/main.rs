@@ -6,6 +6,7 @@ mod c_interface;
 mod checks;
 mod documents;
 mod firmware;
+mod fuzz;
 mod install;
 mod shell;
 
@@ -25,7 +26,7 @@ struct Cli {
 enum Task {
     /// Runs every check, and installs what it needs for that.
     ///
-    /// Rust targets, Miri and QEMU are installed when they are missing. Where
+    /// Rust targets, Miri, cargo-fuzz and QEMU are installed when they are missing. Where
     /// that is not possible, the check fails and prints the command to run.
     /// All checks run, also after one has failed.
     Test {
@@ -47,6 +48,12 @@ enum Task {
     RunFirmware,
     /// Writes the header of the C interface, c-api/include/planner.h.
     CHeader,
+    /// Fuzzes the radio: each target for so many seconds.
+    Fuzz {
+        /// For how long, each.
+        #[arg(long, value_name = "N", default_value_t = 600)]
+        seconds: u32,
+    },
     /// Explores random small worlds until one of them goes wrong.
     Soak {
         /// How many worlds.
@@ -66,6 +73,7 @@ fn main() -> ExitCode {
             .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
         Task::CHeader => c_interface::write_header(),
+        Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::Soak { runs } => soak(runs),
     };
     match outcome {

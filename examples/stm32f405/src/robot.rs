@@ -32,7 +32,7 @@ where
     D: DelayNs,
 {
     let explorer = EXPLORER.take();
-    let mut config = Config::new(MAX_RANGE as u8);
+    let mut config = Config::new();
     config.link.cell_mm = CELL_MM;
     if let Err(error) = explorer.reset(config, RobotId(0), EXTENT, START) {
         defmt::panic!("{}", error);

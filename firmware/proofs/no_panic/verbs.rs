@@ -18,7 +18,7 @@ pub(crate) fn call_all() {
     };
     for robot in [&mut *robot, &mut *other] {
         let extent = black_box(Extent::new(9, 9));
-        let config = black_box(Config::new(5));
+        let config = black_box(Config::new());
         let _ = black_box(robot.reset(config, id(), extent, cell()));
         drive(robot);
     }

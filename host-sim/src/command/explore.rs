@@ -69,7 +69,8 @@ pub(crate) struct Explore {
     /// A cell holds at most one robot.
     #[arg(long)]
     solid: bool,
-    /// Give up after this many ticks. Default: 1000 and 8 for each reachable cell.
+    /// Give up after this many ticks. Default: 1000 and 8 for each reachable
+    /// cell, for bmilrv 100.
     #[arg(long, value_name = "T")]
     max_ticks: Option<u32>,
     /// Folder for pictures, trace and summary. Default: out/ and the map's name.
@@ -241,7 +242,7 @@ impl Explore {
     }
 }
 
-fn parse_share(text: &str) -> Result<f64, String> {
+pub(super) fn parse_share(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (nothing) to 1 (everything), for example 0.6".into()),

@@ -19,7 +19,7 @@ pub(super) struct FolderError {
 /// Files on their way into a folder.
 pub(super) struct Folder {
     path: PathBuf,
-    files: Vec<(NamedTempFile, &'static str)>,
+    files: Vec<(NamedTempFile, String)>,
 }
 
 impl Folder {
@@ -44,7 +44,7 @@ impl Folder {
     /// Prepares a file.
     pub(super) fn write(
         &mut self,
-        name: &'static str,
+        name: impl Into<String>,
         fill: impl FnOnce(&mut dyn Write) -> Result<(), DrawError>,
     ) -> Result<(), FolderError> {
         let filled = || {
@@ -53,7 +53,7 @@ impl Folder {
             Ok(writer.into_inner().map_err(io::Error::from)?)
         };
         let file = filled().map_err(|problem| self.error(problem))?;
-        self.files.push((file, name));
+        self.files.push((file, name.into()));
         Ok(())
     }
 

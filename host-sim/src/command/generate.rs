@@ -42,7 +42,7 @@ impl Generate {
     }
 }
 
-fn parse_size(text: &str) -> Result<Extent, String> {
+pub(super) fn parse_size(text: &str) -> Result<Extent, String> {
     text.split_once(['x', 'X', '×'])
         .and_then(|(width, height)| Some(Extent::new(width.parse().ok()?, height.parse().ok()?)))
         .ok_or_else(|| "expected WIDTHxHEIGHT in cells, for example 64x48".into())

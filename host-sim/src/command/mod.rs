@@ -1,19 +1,25 @@
 //! The subcommands: from arguments to the library and back.
 
+mod compare;
 mod explore;
+mod figures;
 #[cfg(unix)]
 mod firmware;
 mod folder;
 mod generate;
+mod live;
 mod report;
 
 use std::error::Error;
 use std::process::ExitCode;
 
+pub(crate) use compare::Compare;
 pub(crate) use explore::Explore;
+pub(crate) use figures::Figures;
 #[cfg(unix)]
 pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
+pub(crate) use live::{Robot, World};
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;

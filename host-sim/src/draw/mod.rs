@@ -2,6 +2,7 @@
 //! coverage curve.
 
 mod animation;
+pub mod chart;
 mod coverage;
 mod paint;
 mod picture;

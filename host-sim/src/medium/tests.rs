@@ -1,18 +1,18 @@
-//! The ideal medium against one that joins whole maps.
+//! The ideal medium against one that joins whole maps; the air.
 
 use std::sync::Arc;
 
 use planner_core::map::TileIndex;
 use planner_core::radio::LinkConfig;
-use planner_core::{Map, RobotId, Status, TileSet};
+use planner_core::{Cell, Extent, Map, RobotId, Status, TileSet};
 use proptest::prelude::*;
 
 use super::air::Air;
-use super::{AirFaults, Medium, MediumKind, Reach};
+use super::{AirFaults, Medium, MediumKind, Partition, Reach};
 use crate::fleet::{Death, Faults, Fleet, Robot, Rules};
 use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
-use crate::world::{Family, Starts, generate};
+use crate::world::{Family, Starts, World, generate};
 
 const SIDE: usize = 4;
 
@@ -86,7 +86,7 @@ proptest! {
         let fleet = |medium| {
             let extent = world.extent();
             let build = Box::new(move |id, start| {
-                planner.build(Setup { id, range: 4, extent, start, link: LinkConfig::new() }).unwrap()
+                planner.build(Setup { id, extent, start, link: LinkConfig::new() }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
             Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), build, &starts)
@@ -105,4 +105,71 @@ proptest! {
             }
         }
     }
+}
+
+fn air(faults: AirFaults, loss: f64) -> Air {
+    let row = |cell: Cell| cell.x == 5;
+    let world = World::from_fn("wall", Extent::new(20, 3), row).unwrap();
+    Air::new(faults, loss, 7, Arc::new(world))
+}
+
+#[test]
+fn the_air_carries_within_its_reach_and_across_no_partition() {
+    let robot = |id, x| (RobotId(id), Cell::new(x, 1));
+    let mut near = air(
+        AirFaults {
+            reach: Reach::Cells(3),
+            partitions: vec![Partition {
+                from: 10,
+                until: 20,
+                border: 2,
+            }],
+            ..AirFaults::default()
+        },
+        0.0,
+    );
+    assert!(near.carries(0, robot(0, 3), robot(1, 6)));
+    assert!(!near.carries(0, robot(0, 3), robot(1, 7)));
+    for tick in [9, 20] {
+        assert!(near.carries(tick, robot(1, 3), robot(2, 3)));
+    }
+    for tick in [10, 19] {
+        assert!(!near.carries(tick, robot(1, 3), robot(2, 3)));
+        assert!(near.carries(tick, robot(0, 3), robot(1, 3)));
+    }
+    let faults = AirFaults {
+        reach: Reach::LineOfSight,
+        ..AirFaults::default()
+    };
+    let mut sight = air(faults, 0.0);
+    assert!(sight.carries(0, robot(0, 0), robot(1, 4)));
+    assert!(!sight.carries(0, robot(0, 0), robot(1, 6)));
+}
+
+#[test]
+fn the_shares_of_the_air_are_kept() {
+    let faults = AirFaults {
+        duplication: 0.25,
+        corruption: 0.5,
+        delay: 4,
+        ..AirFaults::default()
+    };
+    let mut air = air(faults, 0.75);
+    let robot = |id| (RobotId(id), Cell::new(1, 1));
+    let carried = (0..4000)
+        .filter(|_| air.carries(0, robot(0), robot(1)))
+        .count();
+    assert!((900..1100).contains(&carried), "{carried}");
+    let frame = [0x5a; 52];
+    let copies: Vec<_> = (0..4000).flat_map(|_| air.copies(&frame)).collect();
+    assert!((4900..5100).contains(&copies.len()), "{}", copies.len());
+    let late = |ticks| copies.iter().filter(|(late, _)| *late == ticks).count();
+    assert!((0..=4).all(|ticks| (900..1100).contains(&late(ticks))));
+    assert_eq!(late(5), 0);
+    let wrong = copies
+        .iter()
+        .filter(|(_, bytes)| bytes[..] != frame)
+        .count();
+    // Wrong bits can meet and undo each other, rarely.
+    assert!((2300..2600).contains(&wrong), "{wrong}");
 }

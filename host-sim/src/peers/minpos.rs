@@ -6,7 +6,7 @@ use super::groups::{Frontier, Groups};
 use super::peer::{Rule, Term};
 use super::waves::{Spot, Waves};
 
-/// MinPos [Bautin2011]: robot i goes to the frontier j at which its position
+/// MinPos \[Bautin2011\]: robot i goes to the frontier j at which its position
 /// P_ij = |{k ≠ i : C_kj < C_ij}| is least; of those to the one of least cost.
 /// Robots at equal distance are ranked by id; else robots that stand on one
 /// cell would never part.

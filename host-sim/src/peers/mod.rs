@@ -3,6 +3,7 @@
 //! microcontroller would; otherwise they are robots like any other: they see
 //! sightings and know of others only what they hear.
 
+mod bmilrv;
 mod closest;
 mod greedy;
 mod groups;
@@ -10,6 +11,7 @@ mod minpos;
 mod peer;
 mod waves;
 
+pub use bmilrv::{Bmilrv, Marks};
 pub use closest::Closest;
 pub use greedy::Greedy;
 pub use minpos::{MinPos, PaperMinPos, StrongMinPos};

@@ -68,6 +68,8 @@ pub struct Peer<R, const TW: usize, const TH: usize> {
     closed: Vec<(Cell, u32)>,
     blocked_steps: u32,
     stopped: Option<Stop>,
+    /// Steps to the goal that this tick assigned.
+    assignment: Option<u32>,
     work: u32,
 }
 
@@ -103,6 +105,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
             closed: Vec::new(),
             blocked_steps: 0,
             stopped: None,
+            assignment: None,
             work: 0,
         })
     }
@@ -135,6 +138,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
         if let Some(goal) = self.rule.assign(&mut self.waves, &self.team) {
             self.goal = Some(self.waves.cell(goal));
             self.waves.way(self.position, goal, &mut self.way);
+            self.assignment = Some(self.way.len() as u32);
         }
         self.work = self.waves.visits();
     }
@@ -171,6 +175,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
 
     fn tick(&mut self) -> Action {
         self.work = 0;
+        self.assignment = None;
         self.link.tick();
         if let Some(stop) = self.stopped {
             return Action::Stop(stop);
@@ -253,5 +258,9 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
 
     fn work(&self) -> u32 {
         self.work
+    }
+
+    fn assignment(&self) -> Option<u32> {
+        self.assignment
     }
 }

@@ -58,11 +58,16 @@ pub enum Problem {
         expected: &'static str,
         found: String,
     },
-    #[error("is not a map_server YAML file: {0}")]
-    Yaml(String),
+    #[error(
+        "`{text}`: {found}; expected the keys of a map_server YAML file, \
+         for example `resolution: 0.05`"
+    )]
+    Yaml { text: String, found: String },
 
     #[error("--pixels-per-cell is 0; expected 1 or more")]
     NoPixelsPerCell,
+    #[error("--pixels-per-cell {found} makes too large an image; expected {most} or less")]
+    TooManyPixelsPerCell { found: u32, most: u32 },
     #[error(
         "has no resolution, so --cell-size {metres} means nothing here; \
          use --pixels-per-cell, or describe the image with a map_server YAML file"

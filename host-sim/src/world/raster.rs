@@ -1,8 +1,8 @@
 //! Images as maps.
 
-use std::io::Cursor;
-
-use image::{GrayImage, ImageFormat, Luma};
+use image::codecs::png::PngEncoder;
+use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
+use image::{GrayImage, ImageEncoder, Luma};
 use planner_core::Cell;
 
 use super::World;
@@ -11,6 +11,8 @@ use super::grid::{self, Grid, LARGEST};
 
 const FREE: u8 = 255;
 const OBSTACLE: u8 = 0;
+/// Most pixels along a side of an image that is written.
+const LONGEST_SIDE: u32 = 1 << 14;
 
 /// What one pixel says about the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,24 +87,43 @@ impl Image {
     }
 }
 
-/// The world as an image, a square of `side` pixels for each cell: free cells
-/// white, obstacles black.
-pub(super) fn encode(world: &World, side: u32, format: ImageFormat) -> Result<Vec<u8>, Problem> {
-    if side == 0 {
-        return Err(Problem::NoPixelsPerCell);
-    }
+/// The world as a PNG image, as [`draw`] draws it.
+pub(super) fn png(world: &World, side: u32) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    write(&draw(world, side)?, PngEncoder::new(&mut bytes));
+    Ok(bytes)
+}
+
+/// The world as a binary PGM image, as [`draw`] draws it.
+pub(super) fn pgm(world: &World, side: u32) -> Result<Vec<u8>, Problem> {
+    let subtype = PnmSubtype::Graymap(SampleEncoding::Binary);
+    let mut bytes = Vec::new();
+    let encoder = PnmEncoder::new(&mut bytes).with_subtype(subtype);
+    write(&draw(world, side)?, encoder);
+    Ok(bytes)
+}
+
+/// A square of `side` pixels for each cell: free cells white, obstacles black.
+fn draw(world: &World, side: u32) -> Result<GrayImage, Problem> {
     let extent = world.extent();
-    let (width, height) = (
-        u32::from(extent.width) * side,
-        u32::from(extent.height) * side,
-    );
-    let image = GrayImage::from_fn(width, height, |x, y| {
+    let longest = u32::from(extent.width.max(extent.height));
+    match side {
+        0 => return Err(Problem::NoPixelsPerCell),
+        _ if side > LONGEST_SIDE / longest => {
+            let most = LONGEST_SIDE / longest;
+            return Err(Problem::TooManyPixelsPerCell { found: side, most });
+        }
+        _ => {}
+    }
+    let (width, height) = (u32::from(extent.width), u32::from(extent.height));
+    Ok(GrayImage::from_fn(width * side, height * side, |x, y| {
         let cell = Cell::new((x / side) as i16, (y / side) as i16);
         Luma([if world.is_free(cell) { FREE } else { OBSTACLE }])
-    });
-    let mut bytes = Cursor::new(Vec::new());
+    }))
+}
+
+fn write(image: &GrayImage, to_memory: impl ImageEncoder) {
     image
-        .write_to(&mut bytes, format)
-        .map_err(Problem::BrokenImage)?;
-    Ok(bytes.into_inner())
+        .write_with_encoder(to_memory)
+        .expect("nothing fails in memory");
 }

@@ -25,7 +25,7 @@ struct Yaml {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "expected 0, 1, true or false")]
 enum Negate {
     Number(u8),
     Flag(bool),
@@ -61,8 +61,18 @@ pub(super) fn read(name: &str, path: &Path, yaml: &str, scale: Scale) -> Result<
 
 impl Description {
     fn parse(yaml: &str) -> Result<Self, Problem> {
-        let yaml: Yaml = serde_saphyr::from_str(yaml)
-            .map_err(|error| Problem::Yaml(error.without_snippet().to_string()))?;
+        let yaml: Yaml = serde_saphyr::from_str(yaml).map_err(|error| {
+            // The line itself shows the key, which the parser does not name.
+            let line = error.location().map_or(1, |location| location.line());
+            let text = yaml
+                .lines()
+                .nth((line as usize).saturating_sub(1))
+                .unwrap_or_default();
+            Problem::Yaml {
+                text: text.into(),
+                found: error.without_snippet().to_string(),
+            }
+        })?;
 
         const METRES: &str = "metres per pixel above 0, for example `resolution: 0.05`";
         let resolution = required("resolution", METRES, yaml.resolution)?;
@@ -130,8 +140,7 @@ fn pixels_per_cell(scale: Scale, resolution: f64) -> Result<(u32, Option<String>
     };
     let exact = metres / resolution;
     let pixels = exact.round();
-    // Anything that is no number fails the first comparison.
-    if exact.is_nan() || exact < 1.0 - 1e-9 || pixels > f64::from(u32::MAX) {
+    if !(1.0 - 1e-9..f64::from(u32::MAX)).contains(&exact) {
         return Err(Problem::CellSize { metres, resolution });
     }
     let note = ((exact - pixels).abs() > 1e-6 * exact).then(|| {

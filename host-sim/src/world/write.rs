@@ -3,8 +3,6 @@
 use std::fs;
 use std::path::Path;
 
-use image::ImageFormat;
-
 use super::World;
 use super::error::{Problem, WorldError};
 use super::raster;
@@ -16,12 +14,13 @@ impl World {
     /// Only text maps keep the starts.
     ///
     /// # Errors
-    /// Another ending; a file that cannot be written; `pixels_per_cell` 0.
+    /// Another ending; a file that cannot be written; `pixels_per_cell` 0 or
+    /// so many that a side would have more than 16,384 pixels.
     pub fn write(&self, path: impl AsRef<Path>, pixels_per_cell: u32) -> Result<(), WorldError> {
         let path = path.as_ref();
         let bytes = match ending(path).as_str() {
-            "png" => raster::encode(self, pixels_per_cell, ImageFormat::Png),
-            "pgm" => raster::encode(self, pixels_per_cell, ImageFormat::Pnm),
+            "png" => raster::png(self, pixels_per_cell),
+            "pgm" => raster::pgm(self, pixels_per_cell),
             "map" => Ok(self.to_movingai().into_bytes()),
             "txt" => Ok(self.to_text().into_bytes()),
             _ => Err(unknown_ending(path, ".png, .pgm, .map or .txt")),

@@ -15,12 +15,13 @@ use super::window::{Candidate, Rows, SIDE, Window};
 use crate::cell::Cell;
 use crate::planner::RobotId;
 
-/// Rounds in which the robots that were not served try again, before the robot
-/// looks for itself alone.
-const ROUNDS: u8 = 2;
+/// How often all frontiers are given away anew if there are more robots than
+/// frontiers, before the robot looks for itself alone.
+const PASSES: u8 = 3;
 
-/// Largest distance at which a served robot speaks for frontier cells beside its own.
-const LARGEST_TAKE: u16 = 12;
+/// Distance at which a served robot also speaks for the frontier cells connected
+/// to its own.
+const REACH: u16 = 2;
 
 /// What the far decision has come to.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +39,15 @@ pub(crate) enum Outcome {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
     Idle,
-    Sweep { round: u8 },
-    Route { goal: Cell },
+    /// In rounds of waves from everybody who has no frontier yet; in pass
+    /// [`PASSES`], from this robot alone.
+    Sweep {
+        pass: u8,
+        served_before: u16,
+    },
+    Route {
+        goal: Cell,
+    },
 }
 
 /// The far decision in slices.
@@ -84,7 +92,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         self.own_label = 0;
         let others = others
             .exploring()
-            .map(|other| (other.id, other.status.position))
+            .map(|other| (other.id, other.position))
             .filter(|&(_, position)| around.map.is_free(position));
         let mut own = Some((id, around.position));
         for (other, position) in others {
@@ -102,12 +110,14 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             let _ = self.seeds.push(seed);
         }
         self.served = 0;
-        self.start_round(0, around.position);
+        self.wave.forget_taken();
+        let pass = if self.seeds.len() > 1 { 0 } else { PASSES };
+        self.start_round(pass, around.position);
     }
 
-    fn start_round(&mut self, round: u8, own: Cell) {
+    fn start_round(&mut self, pass: u8, own: Cell) {
         self.wave.clear();
-        if round < ROUNDS {
+        if pass < PASSES {
             for (&(_, cell), label) in self.seeds.iter().zip(0u8..) {
                 if self.served >> label & 1 == 0 {
                     self.wave.seed(cell, label);
@@ -116,7 +126,26 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         } else {
             self.wave.seed(own, self.own_label);
         }
-        self.stage = Stage::Sweep { round };
+        self.stage = Stage::Sweep {
+            pass,
+            served_before: self.served,
+        };
+    }
+
+    /// All waves of a round have ended and this robot has no frontier.
+    fn next_round(&mut self, pass: u8, served_before: u16, own: Cell) -> Outcome {
+        if pass >= PASSES {
+            self.stage = Stage::Idle;
+            return Outcome::NothingLeft;
+        }
+        if self.served != served_before {
+            // Somebody made room for the others.
+            self.start_round(pass, own);
+        } else {
+            self.wave.forget_taken();
+            self.start_round(pass + 1, own);
+        }
+        Outcome::Searching
     }
 
     /// Starts looking for the way to a frontier that is already chosen.
@@ -138,7 +167,10 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         while *work < end {
             let outcome = match self.stage {
                 Stage::Idle => return Outcome::Searching,
-                Stage::Sweep { round } => self.sweep_tile(round, around, work),
+                Stage::Sweep {
+                    pass,
+                    served_before,
+                } => self.sweep_tile(pass, served_before, around, work),
                 Stage::Route { goal } => self.route_tile(goal, around, work),
             };
             if !matches!(outcome, Outcome::Searching) {
@@ -149,15 +181,16 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
     }
 
     /// One tile of a sweep's layer.
-    fn sweep_tile(&mut self, round: u8, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
+    fn sweep_tile(
+        &mut self,
+        pass: u8,
+        served_before: u16,
+        around: &Surroundings<TW, TH>,
+        work: &mut u32,
+    ) -> Outcome {
         *work += 1;
         let Some((at, mut front)) = self.wave.next_front() else {
-            if round >= ROUNDS {
-                self.stage = Stage::Idle;
-                return Outcome::NothingLeft;
-            }
-            self.start_round(round + 1, around.position);
-            return Outcome::Searching;
+            return self.next_round(pass, served_before, around.position);
         };
         let frontier = around.map.frontier(at);
         while front != 0 {
@@ -194,13 +227,12 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         Outcome::Searching
     }
 
-    /// A served robot takes its frontier cell and those connected to it within
-    /// the perception radius: it will see what lies behind them.
+    /// A served robot takes its frontier cell and those connected to it nearby:
+    /// it will see what lies behind them.
     fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
         let window = Window::around(goal);
         let frontier = window.load(|at| around.map.frontier(at));
-        let reach = u16::from(around.radius).min(LARGEST_TAKE);
-        let taken = connected(&frontier, window, goal, reach);
+        let taken = connected(&frontier, window, goal, REACH);
         *work += SIDE as u32;
         for (at, row, column) in window.tiles() {
             let mut cells = 0u64;

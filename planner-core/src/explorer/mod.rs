@@ -49,16 +49,13 @@ use crate::sight::Sighting;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Perception radius of the robots, in cells: how far around a frontier cell
-    /// others are taken to look when they have got there.
-    pub radius: u8,
     /// Tile operations a tick for the far search.
     pub slice: u32,
     /// Steps after which the robot decides again.
     pub d_max: u8,
     /// Changes to a longer plan between two things learnt.
     pub tokens: u8,
-    /// By how many steps a frontier near the goal so far is preferred.
+    /// By how many steps a frontier near the goal chosen last is preferred.
     pub hysteresis: u8,
     /// Ticks that a far goal is kept before another is searched for.
     pub far_pause: u32,
@@ -71,10 +68,9 @@ pub struct Config {
 }
 
 impl Config {
-    /// The configuration that is shipped, for a perception radius of `radius` cells.
-    pub const fn new(radius: u8) -> Self {
+    /// The configuration that is shipped.
+    pub const fn new() -> Self {
         Self {
-            radius,
             slice: 1024,
             d_max: 2,
             tokens: 2,
@@ -94,6 +90,12 @@ impl Config {
     }
 }
 
+impl Default for Config {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// The complete planner with bounded work.
 pub struct Explorer<const TW: usize, const TH: usize> {
     config: Config,
@@ -104,6 +106,8 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     link: Link<TH>,
     near: NearSearch,
     far: FarSearch<TW, TH>,
+    /// The goal chosen last.
+    last_goal: Option<Cell>,
     /// No new far search before this tick while there is a plan.
     far_again: u32,
     /// Whether the map has changed, or a cell was closed, since the far search began.
@@ -119,7 +123,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     pub const fn vacant() -> Self {
         Self {
             config: Config {
-                radius: 0,
                 slice: 0,
                 d_max: 0,
                 tokens: 0,
@@ -134,7 +137,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 map: Map::vacant(),
                 closed: ClosedCells::new(),
                 position: Cell::new(0, 0),
-                radius: 0,
                 now: 0,
             },
             role: Role::new(RobotId(0)),
@@ -142,6 +144,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             link: Link::vacant(),
             near: NearSearch::new(),
             far: FarSearch::new(),
+            last_goal: None,
             far_again: 0,
             far_is_doubtful: false,
             stepping: false,
@@ -178,7 +181,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.around.map.reset(extent)?;
         self.around.closed = ClosedCells::new();
         self.around.position = start;
-        self.around.radius = config.radius;
         self.around.now = 0;
         self.config = config;
         self.id = id;
@@ -186,6 +188,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.others = Others::new();
         self.link.reset(config.link, id, extent);
         self.far.cancel();
+        self.last_goal = None;
         self.far_again = 0;
         self.far_is_doubtful = false;
         self.stepping = false;
@@ -232,19 +235,14 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// found, else on with the plan, else a near frontier of others for the while.
     fn decide(&mut self, found: Option<Candidate>) {
         let aim = Aim {
-            goal: self.role.plan.map(|plan| plan.goal),
+            goal: self.last_goal,
             hysteresis: i32::from(self.config.hysteresis),
         };
         let (now, id) = (self.around.now, self.id);
         let bonus = self.near.load(&self.around, &mut self.work);
         let mine = if let Some(bonus) = &bonus {
-            let others = self.others.exploring().flat_map(|other| {
-                let lower = other.id < id;
-                [Some(other.status.position), other.status.goal]
-                    .into_iter()
-                    .flatten()
-                    .map(move |cell| (cell, lower))
-            });
+            let others = self.others.exploring();
+            let others = others.map(|other| (other.position, other.id < id));
             self.near
                 .best(&self.around, &aim, bonus, others, &mut self.work)
         } else {
@@ -298,6 +296,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             }
             self.role.used += 1;
         }
+        self.last_goal = Some(candidate.goal);
         self.role.plan = Some(Plan {
             goal: candidate.goal,
             remaining: candidate.length,

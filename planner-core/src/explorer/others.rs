@@ -12,14 +12,9 @@ pub const MAX_OTHERS: usize = 15;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Other {
     pub(crate) id: RobotId,
-    pub(crate) status: Status,
+    pub(crate) position: Cell,
+    has_stopped: bool,
     heard_at: u32,
-}
-
-impl Other {
-    fn has_stopped(&self) -> bool {
-        self.status.activity == Activity::Stopped
-    }
 }
 
 /// The robots heard of lately, by id.
@@ -37,7 +32,8 @@ impl Others {
     pub(crate) fn hear(&mut self, id: RobotId, status: Status, own: Cell, now: u32) {
         let heard = Other {
             id,
-            status,
+            position: status.position,
+            has_stopped: status.activity == Activity::Stopped,
             heard_at: now,
         };
         if let Some(known) = self.list.iter_mut().find(|other| other.id == id) {
@@ -56,8 +52,8 @@ impl Others {
     /// than the one heard.
     fn make_room(&mut self, heard: &Other, own: Cell) -> bool {
         let rank = |other: &Other| {
-            let distance = other.status.position.distance_squared(own);
-            (other.has_stopped(), distance)
+            let distance = other.position.distance_squared(own);
+            (other.has_stopped, distance)
         };
         let least = self.list.iter().max_by_key(|other| rank(other));
         match least.map(|other| (other.id, rank(other))) {
@@ -78,6 +74,6 @@ impl Others {
 
     /// Those that still explore, by id.
     pub(crate) fn exploring(&self) -> impl Iterator<Item = &Other> {
-        self.list.iter().filter(|other| !other.has_stopped())
+        self.list.iter().filter(|other| !other.has_stopped)
     }
 }

@@ -9,8 +9,6 @@ pub(crate) struct Surroundings<const TW: usize, const TH: usize> {
     pub(crate) map: Map<TW, TH>,
     pub(crate) closed: ClosedCells,
     pub(crate) position: Cell,
-    /// Perception radius.
-    pub(crate) radius: u8,
     /// Ticks so far.
     pub(crate) now: u32,
 }

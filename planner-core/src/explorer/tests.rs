@@ -15,6 +15,7 @@ struct Scene {
     extent: Extent,
     walls: Vec<bool>,
     start: Vec<Cell>,
+    radius: u8,
     config: Config,
     /// Ticks between two exchanges of maps; 0: never.
     sync: u32,
@@ -97,9 +98,10 @@ fn scene() -> impl Strategy<Value = Scene> {
                             extent: Extent::new(width, height),
                             walls,
                             start,
+                            radius,
                             config: Config {
                                 slice,
-                                ..Config::new(radius)
+                                ..Config::new()
                             },
                             sync,
                             refusals,
@@ -141,7 +143,7 @@ fn run(scene: &Scene, limit: u32) -> Ended {
     let mut ticks = 0;
     while stops.iter().any(Option::is_none) && ticks < limit {
         for (robot, &cell) in robots.iter_mut().zip(&at) {
-            robot.observe(&look(cell, scene.config.radius, |c| scene.is_blocked(c)));
+            robot.observe(&look(cell, scene.radius, |c| scene.is_blocked(c)));
         }
         if scene.sync > 0 && ticks % scene.sync == 0 {
             let told: Vec<_> = robots

@@ -71,6 +71,8 @@ pub(crate) struct Wave<const TW: usize, const TH: usize> {
     tiles: [[WaveTile; TW]; TH],
     /// The tiles that hold something of this wave; all others count as empty.
     touched: TileSet<TH>,
+    /// The tiles with frontier cells that are spoken for.
+    spoken: TileSet<TH>,
     /// Tiles with a front, by the layer's parity.
     active: [TileSet<TH>; 2],
     layer: u32,
@@ -81,16 +83,22 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         Self {
             tiles: [[WaveTile::EMPTY; TW]; TH],
             touched: TileSet::new(),
+            spoken: TileSet::new(),
             active: [TileSet::new(); 2],
             layer: 0,
         }
     }
 
-    /// Forgets everything. Work: three words a row of tiles.
+    /// Forgets all waves, but not who is spoken for. Work: three words a row of tiles.
     pub(crate) fn clear(&mut self) {
         self.touched.clear();
         self.active = [TileSet::new(); 2];
         self.layer = 0;
+    }
+
+    /// Nobody has spoken for any frontier cell.
+    pub(crate) fn forget_taken(&mut self) {
+        self.spoken.clear();
     }
 
     /// Steps that the wave has made: the distance of the cells of its front.
@@ -108,15 +116,20 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     }
 
     /// The tile of this wave, empty where it has not been.
-    fn tile(&self, at: TileIndex) -> &WaveTile {
-        const EMPTY: &WaveTile = &WaveTile::EMPTY;
-        if !self.touched.contains(at) {
-            return EMPTY;
+    fn tile(&self, at: TileIndex) -> WaveTile {
+        if self.touched.contains(at) {
+            self.stored(at)
+        } else {
+            WaveTile::EMPTY
         }
+    }
+
+    fn stored(&self, at: TileIndex) -> WaveTile {
         self.tiles
             .get(usize::from(at.y))
             .and_then(|row| row.get(usize::from(at.x)))
-            .unwrap_or(EMPTY)
+            .copied()
+            .unwrap_or(WaveTile::EMPTY)
     }
 
     fn tile_mut(&mut self, at: TileIndex) -> Option<&mut WaveTile> {
@@ -125,7 +138,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             .get_mut(usize::from(at.y))?
             .get_mut(usize::from(at.x))?;
         if !self.touched.contains(at) {
-            *tile = WaveTile::EMPTY;
+            *tile = WaveTile {
+                taken: tile.taken,
+                ..WaveTile::EMPTY
+            };
             self.touched.insert(at);
         }
         Some(tile)
@@ -178,15 +194,21 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
 
     /// The frontier cells of a tile that are spoken for.
     pub(crate) fn taken(&self, at: TileIndex) -> u64 {
-        self.tile(at).taken
+        if self.spoken.contains(at) {
+            self.stored(at).taken
+        } else {
+            0
+        }
     }
 
     /// Speaks for frontier cells.
     pub(crate) fn take(&mut self, at: TileIndex, cells: u64) {
-        if cells != 0
+        let taken = self.taken(at) | cells;
+        if taken != 0
             && let Some(tile) = self.tile_mut(at)
         {
-            tile.taken |= cells;
+            tile.taken = taken;
+            self.spoken.insert(at);
         }
     }
 

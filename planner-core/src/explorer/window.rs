@@ -83,7 +83,8 @@ fn get(rows: &Rows, row: usize, column: u32) -> bool {
 /// What the near decision looks for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Aim {
-    /// The goal so far: frontiers near it are preferred.
+    /// The goal chosen last, resolved or not: frontiers near it are preferred, so
+    /// that the robot goes on the way it was going.
     pub(crate) goal: Option<Cell>,
     /// By how many steps.
     pub(crate) hysteresis: i32,
@@ -99,7 +100,11 @@ pub(crate) struct Candidate {
     pub(crate) path: Path,
 }
 
-/// Bonus of a frontier cell for each cell between it and the nearest visited one.
+/// What a step costs in the score of a frontier cell.
+const STEP: i32 = 4;
+/// What each cell between it and the nearest visited one is worth.
+const PER_CELL: i32 = 5;
+/// Cells that count at most.
 const LARGEST_BONUS: i32 = 8;
 
 /// How far every cell of the window is from the visited ones: 1 to 8, less one, a
@@ -196,8 +201,8 @@ impl NearSearch {
     }
 
     /// The best frontier that the robot is nearer to than anybody else, ties to
-    /// the lower id. `others` gives each known position or goal of another robot
-    /// and whether its id is lower; without any, every frontier counts.
+    /// the lower id. `others` gives where each other robot is and whether its id is
+    /// lower; without any, every frontier counts.
     pub(crate) fn best<const TW: usize, const TH: usize>(
         &mut self,
         around: &Surroundings<TW, TH>,
@@ -252,7 +257,7 @@ impl NearSearch {
         let mut best: Option<(i32, usize, u32, u32)> = None;
         for length in 1..=(SIDE * SIDE) as u32 {
             // No frontier from here on can score better than this.
-            let bound = length as i32 - LARGEST_BONUS - aim.hysteresis;
+            let bound = STEP * (length as i32 - aim.hysteresis) - PER_CELL * LARGEST_BONUS;
             if best.is_some_and(|(score, ..)| score <= bound) {
                 break;
             }
@@ -278,9 +283,9 @@ impl NearSearch {
                     let near_goal = aim
                         .goal
                         .is_some_and(|goal| goal.chebyshev(self.window.cell(y, column)) <= 3);
-                    let score = length as i32
-                        - bonus.at(y, column)
-                        - if near_goal { aim.hysteresis } else { 0 };
+                    let preference = if near_goal { aim.hysteresis } else { 0 };
+                    let score =
+                        STEP * (length as i32 - preference) - PER_CELL * bonus.at(y, column);
                     if best.is_none_or(|(least, ..)| score < least) {
                         best = Some((score, y, column, length));
                     }

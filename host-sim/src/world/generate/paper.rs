@@ -1,12 +1,12 @@
-//! Four maps in the spirit of figure 4 of Gauville & Charpillet 2019, of which
-//! only pictures were published. Ten robots start together at the top left.
+//! Four maps in the spirit of figure 4 of Gauville & Charpillet 2019, and a maze
+//! for the MinPos slides; only pictures of them were published. Ten robots start together at the top left.
 
 use planner_core::{Cell, Extent};
 
 use super::super::dice::Dice;
 use super::super::grid::Grid;
 use super::super::{Starts, World};
-use super::{maze, scatter};
+use super::{maze as mazes, scatter};
 
 const ROBOTS: usize = 10;
 /// Share of the labyrinths' dead ends, in per cent, that are opened to a loop.
@@ -14,14 +14,21 @@ const OPENED: u16 = 35;
 
 /// Labyrinth 1: corridors of 2 cells, 52×52, a third of the dead ends opened.
 pub fn labyrinth1(seed: u64) -> World {
-    let grid = maze::maze(Extent::new(52, 52), 2, OPENED, &mut Dice::new(seed));
+    let grid = mazes::maze(Extent::new(52, 52), 2, OPENED, &mut Dice::new(seed));
     with_starts("labyrinth1", grid)
 }
 
 /// Labyrinth 2: corridors of 5 cells, 61×61, a third of the dead ends opened.
 pub fn labyrinth2(seed: u64) -> World {
-    let grid = maze::maze(Extent::new(61, 61), 5, OPENED, &mut Dice::new(seed));
+    let grid = mazes::maze(Extent::new(61, 61), 5, OPENED, &mut Dice::new(seed));
     with_starts("labyrinth2", grid)
+}
+
+/// A maze in the spirit of the MinPos slides [Bautin2011], of which only a picture
+/// was published: corridors of 3 cells, 61×61, no loop.
+pub fn maze(seed: u64) -> World {
+    let grid = mazes::maze(Extent::new(61, 61), 3, 0, &mut Dice::new(seed));
+    with_starts("maze", grid)
 }
 
 /// Circle: a disc of radius 29 with five boxes, placed like the five of a die.

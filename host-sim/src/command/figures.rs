@@ -1,0 +1,105 @@
+//! `host-sim figures`.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use clap::Args;
+use host_sim::experiments::figures::{Effort, Figure, figures, measure, page};
+use host_sim::experiments::to_csv;
+use host_sim::world::{ReadOptions, Scale, World};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::Done;
+use super::folder::Folder;
+
+#[derive(Args)]
+pub(crate) struct Figures {
+    /// Folder for the figures.
+    #[arg(long, value_name = "DIR", default_value = "out/figures")]
+    out: PathBuf,
+    /// These figures only: fig6 to fig11, minpos.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    only: Vec<String>,
+    /// A few runs only, to see that all is well.
+    #[arg(long)]
+    quick: bool,
+    /// The hospital section of Player/Stage as an image, for the figure minpos.
+    #[arg(long, value_name = "IMAGE")]
+    hospital: Option<PathBuf>,
+    /// Pixels of that image that are one cell.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    pixels_per_cell: u32,
+    /// No progress bar.
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl Figures {
+    pub(crate) fn run(self) -> Done {
+        let figures = self.figures()?;
+        let runs: usize = figures.iter().map(|figure| figure.plan.runs()).sum();
+        let bar = self.progress_bar(runs);
+        let mut folder = Folder::open(self.out.clone())?;
+        let mut measured = Vec::new();
+        for figure in figures {
+            let id = figure.id;
+            bar.set_message(id);
+            let done = measure(figure, &|| bar.inc(1))?;
+            let chart = done.chart();
+            let svg = chart.svg()?;
+            folder.write(format!("{id}.svg"), |file| {
+                Ok(file.write_all(svg.as_bytes())?)
+            })?;
+            folder.write(format!("{id}.png"), |file| chart.write_png(file))?;
+            folder.write(format!("{id}.csv"), |file| {
+                Ok(file.write_all(&to_csv(&done.rows, true))?)
+            })?;
+            measured.push(done);
+        }
+        let page = page(&measured);
+        folder.write("index.html", |file| Ok(file.write_all(page.as_bytes())?))?;
+        folder.close()?;
+        bar.finish_and_clear();
+        println!("{}: {runs} runs", self.out.join("index.html").display());
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn figures(&self) -> Result<Vec<Figure>, Box<dyn std::error::Error>> {
+        let effort = match self.quick {
+            true => Effort::Quick,
+            false => Effort::Full,
+        };
+        let options = ReadOptions {
+            scale: Scale::Pixels(self.pixels_per_cell),
+            ..ReadOptions::default()
+        };
+        let hospital = self.hospital.as_ref();
+        let hospital = hospital.map(|path| World::read(path, &options).map(Arc::new));
+        let mut figures = figures(effort, hospital.transpose()?);
+        if let Some(unknown) = self
+            .only
+            .iter()
+            .find(|id| figures.iter().all(|figure| figure.id != **id))
+        {
+            let ids: Vec<_> = figures.iter().map(|figure| figure.id).collect();
+            return Err(
+                format!("--only: no figure {unknown}; there are {}", ids.join(", ")).into(),
+            );
+        }
+        if !self.only.is_empty() {
+            figures.retain(|figure| self.only.iter().any(|id| figure.id == *id));
+        }
+        Ok(figures)
+    }
+
+    fn progress_bar(&self, runs: usize) -> ProgressBar {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return ProgressBar::hidden();
+        }
+        let style = "{spinner} {percent:>3} % {wide_bar} {pos}/{len} runs, {msg} [{elapsed}]";
+        ProgressBar::new(runs as u64)
+            .with_style(ProgressStyle::with_template(style).expect("the template is well-formed"))
+    }
+}

@@ -1,0 +1,235 @@
+//! A run in one row of a table.
+
+use clap::ValueEnum;
+use planner_core::Extent;
+use serde::{Deserialize, Serialize};
+
+use super::plan::{Place, Setup, Site};
+use crate::planners::PlannerKind;
+use crate::run::Outcome;
+
+/// A run and its metrics, in the column names of the tables.
+///
+/// Ticks are moves that anybody could have made, as in
+/// [`Outcome::ticks_to_seen`]; `None` if it never came to that.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// See [`Site::family`].
+    pub family: String,
+    /// Name of the world.
+    pub world: String,
+    /// Columns of the world.
+    pub width: u16,
+    /// Rows of the world.
+    pub height: u16,
+    /// What decided.
+    pub planner: PlannerKind,
+    /// Number of robots.
+    pub robots: u8,
+    /// How they were placed.
+    pub place: Place,
+    /// Which placing, from 0.
+    pub start: u32,
+    /// Ticks between two exchanges; 0: never.
+    pub sync: u32,
+    /// Share of messages lost, 0 to 1.
+    pub loss: f64,
+    /// Sensor range in cells.
+    pub range: u8,
+    /// Seed of the plan.
+    pub seed: u64,
+    /// Whether every reachable cell was seen by somebody.
+    pub complete: bool,
+    /// Ticks until 90 % of the reachable cells were seen.
+    pub ticks_to_90: Option<u32>,
+    /// Ticks until 99 % were seen.
+    pub ticks_to_99: Option<u32>,
+    /// Ticks until all were seen.
+    pub ticks_to_seen: Option<u32>,
+    /// Ticks until every robot had stopped.
+    pub ticks_to_stopped: Option<u32>,
+    /// Ticks that were run.
+    pub ticks: u32,
+    /// Cells that could be reached.
+    pub reachable_cells: u32,
+    /// Reachable cells that somebody saw.
+    pub seen_cells: u32,
+    /// Robots that had stopped at the end.
+    pub stopped_robots: u32,
+    /// Cells walked by a robot, on average.
+    pub steps_mean: f64,
+    /// Standard deviation of that among the robots.
+    pub steps_sd: f64,
+    /// Cells walked by the robot that walked most.
+    pub steps_max: u32,
+    /// Share of the seen cells that more than one robot saw itself.
+    pub overlap: f64,
+    /// Largest work of one planner in one tick, in its own unit.
+    pub work_max: u32,
+    /// Mean work of a planner in a tick.
+    pub work_mean: f64,
+    /// Sum of costs of an assignment, on average over assignments
+    /// [Bautin2011, criterion 1]. Costs are steps; `None` if the planner does
+    /// not assign.
+    pub assignment_sum: Option<f64>,
+    /// Largest cost of an assignment, on average [Bautin2011, criterion 2].
+    pub assignment_max: Option<f64>,
+}
+
+/// What tells a run from all others.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    world: String,
+    extent: (u16, u16),
+    planner: PlannerKind,
+    robots: u8,
+    place: Place,
+    start: u32,
+    sync: u32,
+    loss: u64,
+    range: u8,
+    seed: u64,
+}
+
+impl Key {
+    /// The run of `setup` at `site`.
+    pub fn new(site: &Site, setup: &Setup) -> Self {
+        let Extent { width, height } = site.extent();
+        Self {
+            world: site.name(),
+            extent: (width, height),
+            planner: setup.planner,
+            robots: setup.robots,
+            place: setup.place,
+            start: setup.start,
+            sync: setup.sync,
+            loss: setup.loss.to_bits(),
+            range: setup.range,
+            seed: setup.seed,
+        }
+    }
+
+    /// The key of the run that is to be paired with this one.
+    pub(super) fn with_planner(self, planner: PlannerKind) -> Self {
+        Self { planner, ..self }
+    }
+}
+
+/// What runs are compared by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Metric {
+    /// Ticks until 90 % of the reachable cells were seen.
+    #[value(name = "90")]
+    Seen90,
+    /// Ticks until 99 % were seen.
+    #[value(name = "99")]
+    Seen99,
+    /// Ticks until all were seen.
+    #[value(name = "seen")]
+    Seen,
+    /// Ticks until every robot had stopped.
+    #[value(name = "stopped")]
+    Stopped,
+}
+
+impl Metric {
+    /// The name used on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Seen90 => "90",
+            Self::Seen99 => "99",
+            Self::Seen => "seen",
+            Self::Stopped => "stopped",
+        }
+    }
+
+    /// What is counted, in words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Seen90 => "ticks until 90 % is seen",
+            Self::Seen99 => "ticks until 99 % is seen",
+            Self::Seen => "ticks until all is seen",
+            Self::Stopped => "ticks until all robots have stopped",
+        }
+    }
+}
+
+impl Row {
+    /// The row of a run.
+    pub fn new(site: &Site, setup: &Setup, outcome: &Outcome) -> Self {
+        let Extent { width, height } = site.extent();
+        let steps: Vec<f64> = outcome
+            .robots
+            .iter()
+            .map(|robot| f64::from(robot.steps))
+            .collect();
+        let robots = steps.len() as f64;
+        let steps_mean = steps.iter().sum::<f64>() / robots;
+        let squares = steps.iter().map(|step| (step - steps_mean).powi(2));
+        let work: u64 = outcome.robots.iter().map(|robot| robot.work).sum();
+        let stopped = outcome.robots.iter().filter(|robot| robot.stop.is_some());
+        Self {
+            family: site.family(),
+            world: site.name(),
+            width,
+            height,
+            planner: setup.planner,
+            robots: setup.robots,
+            place: setup.place,
+            start: setup.start,
+            sync: setup.sync,
+            loss: setup.loss,
+            range: setup.range,
+            seed: setup.seed,
+            complete: outcome.is_complete(),
+            ticks_to_90: outcome.ticks_to_share(0.90),
+            ticks_to_99: outcome.ticks_to_share(0.99),
+            ticks_to_seen: outcome.ticks_to_seen,
+            ticks_to_stopped: outcome.ticks_to_stopped,
+            ticks: outcome.ticks,
+            reachable_cells: outcome.reachable_cells,
+            seen_cells: outcome.seen_cells,
+            stopped_robots: stopped.count() as u32,
+            steps_mean,
+            steps_sd: (squares.sum::<f64>() / robots).sqrt(),
+            steps_max: outcome
+                .robots
+                .iter()
+                .map(|robot| robot.steps)
+                .max()
+                .unwrap_or(0),
+            overlap: outcome.overlap(),
+            work_max: outcome.max_work_per_tick,
+            work_mean: work as f64 / (robots * f64::from(outcome.ticks.max(1))),
+            assignment_sum: outcome.assignments.mean_sum(),
+            assignment_max: outcome.assignments.mean_largest(),
+        }
+    }
+
+    /// What tells this run from all others.
+    pub fn key(&self) -> Key {
+        Key {
+            world: self.world.clone(),
+            extent: (self.width, self.height),
+            planner: self.planner,
+            robots: self.robots,
+            place: self.place,
+            start: self.start,
+            sync: self.sync,
+            loss: self.loss.to_bits(),
+            range: self.range,
+            seed: self.seed,
+        }
+    }
+
+    /// A metric of a run that was complete.
+    pub fn metric(&self, metric: Metric) -> Option<u32> {
+        let ticks = match metric {
+            Metric::Seen90 => self.ticks_to_90,
+            Metric::Seen99 => self.ticks_to_99,
+            Metric::Seen => self.ticks_to_seen,
+            Metric::Stopped => self.ticks_to_stopped,
+        };
+        ticks.filter(|_| self.complete)
+    }
+}

@@ -1,0 +1,199 @@
+//! One robot as a process.
+
+use std::io;
+use std::net::{SocketAddr, UdpSocket};
+use std::time::Duration;
+
+use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::{Action, Cell, Extent, Motion, Planner, RobotId};
+use serde::{Deserialize, Serialize};
+
+use super::protocol::{FromRobot, FromWorld, Line, go};
+use crate::planners::{PlannerKind, Setup};
+
+/// Longest silence of the world.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// How a robot takes part.
+#[derive(Clone, Debug)]
+pub struct RobotOptions {
+    /// Its number, less than the world's number of robots.
+    pub robot: u8,
+    /// What decides.
+    pub planner: PlannerKind,
+    /// Where the world is served.
+    pub world: SocketAddr,
+    /// Where it hears frames.
+    pub listen: SocketAddr,
+    /// Where the others hear frames.
+    pub peers: Vec<SocketAddr>,
+    /// How it uses the radio.
+    pub link: LinkConfig,
+}
+
+/// What a robot came to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RobotReport {
+    /// Its number.
+    pub robot: u8,
+    /// Why it stopped; `None` if the run ended before.
+    pub stop: Option<String>,
+    /// Cells walked.
+    pub steps: u32,
+    /// Free cells on its map.
+    pub free_cells_known: u32,
+    /// Frames sent, to all peers at once.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
+    /// Frames heard and taken.
+    pub frames_heard: u32,
+    /// Datagrams that were not.
+    pub frames_refused: u32,
+}
+
+/// Takes part in a run until the world ends it.
+///
+/// # Errors
+/// The world or the socket fails, or the grid is larger than any planner's map.
+pub fn explore(options: &RobotOptions) -> io::Result<RobotReport> {
+    let socket = UdpSocket::bind(options.listen)?;
+    socket.set_nonblocking(true)?;
+    let mut line = Line::connect(options.world, PATIENCE)?;
+    line.say(&FromRobot::Hello {
+        robot: options.robot,
+    })?;
+    let welcome = line.hear()?;
+    let FromWorld::Welcome {
+        width,
+        height,
+        at: (x, y),
+        ..
+    } = welcome
+    else {
+        return Err(io::Error::other(format!("the world said {welcome:?}")));
+    };
+    let place = Place {
+        extent: Extent::new(width, height),
+        start: Cell::new(x, y),
+    };
+    match width.max(height) {
+        0..=64 => Body::<8, 8>::new(options, &place, socket)?.run(line),
+        65..=256 => Body::<32, 32>::new(options, &place, socket)?.run(line),
+        _ => Body::<64, 64>::new(options, &place, socket)?.run(line),
+    }
+}
+
+/// Where a robot finds itself.
+struct Place {
+    extent: Extent,
+    start: Cell,
+}
+
+struct Body<const TW: usize, const TH: usize> {
+    planner: Box<dyn Planner<TW, TH>>,
+    socket: UdpSocket,
+    peers: Vec<SocketAddr>,
+    report: RobotReport,
+}
+
+impl<const TW: usize, const TH: usize> Body<TW, TH> {
+    fn new(options: &RobotOptions, place: &Place, socket: UdpSocket) -> io::Result<Self> {
+        let id = RobotId(options.robot);
+        let planner = options
+            .planner
+            .build(Setup {
+                id,
+                extent: place.extent,
+                start: place.start,
+                link: options.link,
+            })
+            .map_err(io::Error::other)?;
+        Ok(Self {
+            planner,
+            socket,
+            peers: options.peers.clone(),
+            report: RobotReport {
+                robot: options.robot,
+                stop: None,
+                steps: 0,
+                free_cells_known: 0,
+                frames_sent: 0,
+                bytes_sent: 0,
+                frames_heard: 0,
+                frames_refused: 0,
+            },
+        })
+    }
+
+    fn run(mut self, mut line: Line) -> io::Result<RobotReport> {
+        loop {
+            match line.hear()? {
+                FromWorld::Look(look) => {
+                    self.planner.observe(&look.sighting());
+                    self.speak();
+                    self.listen();
+                    let act = match self.planner.tick() {
+                        Action::Move(direction) => go(direction),
+                        Action::Wait => FromRobot::Wait,
+                        Action::Stop(stop) => {
+                            self.report.stop = Some(stop.to_string());
+                            FromRobot::Stop {
+                                reason: stop.to_string(),
+                            }
+                        }
+                    };
+                    line.say(&act)?;
+                }
+                FromWorld::Went(moved) => {
+                    self.report.steps += u32::from(moved);
+                    self.planner.report(match moved {
+                        true => Motion::Moved,
+                        false => Motion::Blocked,
+                    });
+                }
+                FromWorld::Over => return Ok(self.close()),
+                FromWorld::Welcome { .. } => {}
+            }
+        }
+    }
+
+    /// Sends what the budget allows. A peer that is not there does not matter.
+    fn speak(&mut self) {
+        let mut buffer = [0; MAX_LEN];
+        while let Some(length) = self.planner.transmit(&mut buffer) {
+            self.report.frames_sent += 1;
+            self.report.bytes_sent += length as u32;
+            for peer in &self.peers {
+                let _ = self.socket.send_to(&buffer[..length], peer);
+            }
+        }
+    }
+
+    /// Takes in what has arrived; no more than a thousand datagrams a tick, so
+    /// that nobody can keep it from deciding.
+    fn listen(&mut self) {
+        // One byte more than a frame, to notice those that are too long.
+        let mut buffer = [0; MAX_LEN + 1];
+        for _ in 0..1000 {
+            match self.socket.recv_from(&mut buffer) {
+                Ok((length, _)) => match self.planner.receive(&buffer[..length]) {
+                    Ok(_) => self.report.frames_heard += 1,
+                    Err(_) => self.report.frames_refused += 1,
+                },
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return,
+                // On some systems an absent peer comes back as an error.
+                Err(_) => {}
+            }
+        }
+    }
+
+    fn close(mut self) -> RobotReport {
+        let map = self.planner.map();
+        let Extent { width, height } = map.extent();
+        let cells = (0..height as i16).flat_map(|y| (0..width as i16).map(move |x| (x, y)));
+        let free = cells.filter(|&(x, y)| map.is_free(Cell::new(x, y)));
+        self.report.free_cells_known = free.count() as u32;
+        self.report
+    }
+}

@@ -1,0 +1,167 @@
+//! What is written down of a run.
+
+use std::sync::Arc;
+
+use planner_core::{Cell, Map};
+
+use super::{Assignments, Outcome, Progress, RobotOutcome, Scenario};
+use crate::coverage::Coverage;
+use crate::fleet::{Deed, Fleet, Robot, Sent};
+use crate::sensor::Sensor;
+use crate::trace::{Record, Trace};
+use crate::world::{Reachable, World};
+
+/// What is written down while a run goes on.
+pub(super) struct Book {
+    sensor: Arc<Sensor>,
+    reachable: Reachable,
+    coverage: Coverage,
+    looked_from: Vec<Option<Cell>>,
+    outcome: Outcome,
+    records: Option<Vec<Record>>,
+}
+
+impl Book {
+    pub(super) fn new(scenario: &Scenario, sensor: Arc<Sensor>, trace: bool) -> Self {
+        let robots = scenario.starts.len();
+        let reachable = scenario.world.reachable(&scenario.starts);
+        let outcome = Outcome {
+            ticks: 0,
+            ticks_to_seen: None,
+            ticks_to_stopped: None,
+            reachable_cells: reachable.count(),
+            seen_cells: 0,
+            shared_cells: 0,
+            max_work_per_tick: 0,
+            coverage: Vec::new(),
+            assignments: Assignments::default(),
+            robots: vec![
+                RobotOutcome {
+                    steps: 0,
+                    blocked_steps: 0,
+                    cells_known: 0,
+                    cells_missed: 0,
+                    cells_unheard: 0,
+                    work: 0,
+                    sent: Sent::default(),
+                    stop: None,
+                    alive: true,
+                };
+                robots
+            ],
+            violations: Vec::new(),
+        };
+        Self {
+            coverage: Coverage::new(&scenario.world, &reachable, robots),
+            sensor,
+            reachable,
+            looked_from: vec![None; robots],
+            outcome,
+            records: trace.then(Vec::new),
+        }
+    }
+
+    /// Takes down the last tick.
+    pub(super) fn note<const TW: usize, const TH: usize>(&mut self, fleet: &Fleet<TW, TH>) {
+        let tick = fleet.ticks() - 1;
+        for (index, robot) in fleet.robots().iter().enumerate() {
+            let Some(step) = robot.step else { continue };
+            if self.looked_from[index] != Some(step.at) {
+                self.looked_from[index] = Some(step.at);
+                self.coverage.look(index, self.sensor.view(step.at));
+            }
+            let noted = &mut self.outcome.robots[index];
+            noted.work += u64::from(step.work);
+            noted.sent.frames += step.sent.frames;
+            noted.sent.bytes += step.sent.bytes;
+            noted.stop = None;
+            match step.deed {
+                Deed::Moved(_) => noted.steps += 1,
+                Deed::Blocked(_) => noted.blocked_steps += 1,
+                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded | Deed::Waited => {}
+                Deed::Stopped(stop) => noted.stop = Some(stop),
+            }
+            let most = &mut self.outcome.max_work_per_tick;
+            *most = step.work.max(*most);
+            if let Some(records) = &mut self.records {
+                records.push(Record::new(tick, robot, step));
+            }
+        }
+        let living = fleet.robots().iter().filter(|robot| robot.alive);
+        let outcome = &mut self.outcome;
+        outcome
+            .assignments
+            .add(living.filter_map(|robot| robot.planner.assignment()));
+        outcome.ticks = fleet.ticks();
+        outcome.seen_cells = self.coverage.seen_cells();
+        outcome.coverage.push(outcome.seen_cells);
+        if outcome.seen_cells == outcome.reachable_cells {
+            outcome.ticks_to_seen.get_or_insert(tick);
+        }
+        if fleet.has_stopped() {
+            outcome.ticks_to_stopped.get_or_insert(tick);
+        }
+    }
+
+    pub(super) fn progress(&self) -> Progress {
+        Progress {
+            ticks: self.outcome.ticks,
+            seen_cells: self.outcome.seen_cells,
+            reachable_cells: self.outcome.reachable_cells,
+        }
+    }
+
+    pub(super) fn close<const TW: usize, const TH: usize>(
+        mut self,
+        scenario: &Scenario,
+        fleet: &Fleet<TW, TH>,
+    ) -> (Outcome, Option<Trace>) {
+        self.outcome.shared_cells = self.coverage.shared_cells();
+        self.outcome.violations = fleet.violations().to_vec();
+        let unheard = unheard(fleet);
+        for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
+            let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
+            noted.alive = robot.alive;
+            noted.cells_known = robot.planner.map().known_cells();
+            noted.cells_unheard = unheard[usize::from(robot.id.0)];
+            noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
+        }
+        let trace = self.records.map(|records| Trace::new(scenario, records));
+        (self.outcome, trace)
+    }
+}
+
+/// Cells that `robot` could reach and does not know.
+fn missed<const TW: usize, const TH: usize>(
+    world: &World,
+    all: &Reachable,
+    robot: &Robot<TW, TH>,
+    start: Cell,
+) -> u32 {
+    let lacks = |cell: &Cell| !robot.planner.map().is_known(*cell);
+    if all.cells().any(|cell| lacks(&cell)) {
+        world.reachable(&[start]).cells().filter(lacks).count() as u32
+    } else {
+        0
+    }
+}
+
+/// Robot by robot, the cells that it lacks and another one alive knows.
+fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> {
+    let alive = || fleet.robots().iter().filter(|robot| robot.alive);
+    let mut all: Option<Box<Map<TW, TH>>> = None;
+    for robot in alive() {
+        match &mut all {
+            None => all = Some(Box::new(robot.planner.map().clone())),
+            Some(all) => {
+                all.join(robot.planner.map());
+            }
+        }
+    }
+    let known = all.map_or(0, |all| all.known_cells());
+    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
+    let robots = fleet.robots().iter();
+    robots
+        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
+        .collect()
+}

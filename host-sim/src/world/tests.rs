@@ -1,1 +1,0 @@
-//! Laws of worlds, whatever they come from.

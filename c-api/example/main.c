@@ -69,7 +69,6 @@ int main(void) {
     PlannerCell at = {1, 1};
     const PlannerConfig config = {
         .id = 0,
-        .range = RANGE,
         .width = WIDTH,
         .height = HEIGHT,
         .start = at,

@@ -46,17 +46,15 @@ typedef enum {
   // The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
   // outside of it.
   PLANNER_RESULT_EXTENT = 4,
-  // The sensor's range is 0.
-  PLANNER_RESULT_RANGE = 5,
   // The scan's pose or its largest range is not a usable number.
-  PLANNER_RESULT_SCAN = 6,
+  PLANNER_RESULT_SCAN = 5,
   // More values than a call takes.
-  PLANNER_RESULT_TOO_MANY = 7,
+  PLANNER_RESULT_TOO_MANY = 6,
   // The motion is none of the constants.
-  PLANNER_RESULT_MOTION = 8,
+  PLANNER_RESULT_MOTION = 7,
   // The frame says nothing to this robot: damaged, its own, of another version
   // or about another grid.
-  PLANNER_RESULT_FRAME = 9,
+  PLANNER_RESULT_FRAME = 8,
 } PlannerResult;
 
 // What the robot shall do.
@@ -111,8 +109,6 @@ typedef struct {
 typedef struct {
   // The robot's number; lower ones win ties.
   uint8_t id;
-  // How far the robot sees, in cells.
-  uint8_t range;
   // Width of the grid, in cells.
   uint16_t width;
   // Height of the grid, in cells.

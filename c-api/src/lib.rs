@@ -49,9 +49,6 @@ pub extern "C" fn planner_create(
 ) -> PlannerResult {
     answer(|| {
         let config = *input(config)?;
-        if config.range == 0 {
-            return Err(PlannerResult::Range);
-        }
         let extent = Extent::new(config.width, config.height);
         let start = Cell::new(config.start.x, config.start.y);
         if !extent.contains(start) {

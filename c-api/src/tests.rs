@@ -4,7 +4,6 @@ use super::*;
 
 const CONFIG: PlannerConfig = PlannerConfig {
     id: 1,
-    range: 5,
     width: 9,
     height: 9,
     start: PlannerCell { x: 1, y: 1 },
@@ -92,10 +91,6 @@ fn memory_without_a_planner_and_values_out_of_range_are_answered() {
         ..CONFIG
     };
     assert_eq!(planner_create(ready, &outside), PlannerResult::Extent);
-    assert_eq!(
-        planner_create(ready, &PlannerConfig { range: 0, ..CONFIG }),
-        PlannerResult::Range
-    );
     assert_eq!(planner_create(ready, &CONFIG), PlannerResult::Ok);
     assert_eq!(planner_report(ready, 3), PlannerResult::Motion);
     let pose = PlannerPose {

@@ -18,17 +18,15 @@ pub enum PlannerResult {
     /// The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
     /// outside of it.
     Extent = 4,
-    /// The sensor's range is 0.
-    Range = 5,
     /// The scan's pose or its largest range is not a usable number.
-    Scan = 6,
+    Scan = 5,
     /// More values than a call takes.
-    TooMany = 7,
+    TooMany = 6,
     /// The motion is none of the constants.
-    Motion = 8,
+    Motion = 7,
     /// The frame says nothing to this robot: damaged, its own, of another version
     /// or about another grid.
-    Frame = 9,
+    Frame = 8,
 }
 
 /// One cell of the grid.
@@ -48,8 +46,6 @@ pub struct PlannerCell {
 pub struct PlannerConfig {
     /// The robot's number; lower ones win ties.
     pub id: u8,
-    /// How far the robot sees, in cells.
-    pub range: u8,
     /// Width of the grid, in cells.
     pub width: u16,
     /// Height of the grid, in cells.

@@ -18,7 +18,7 @@ pub fn page(figures: &[Measured]) -> String {
          <h1>Exploration planners compared</h1>\n\
          <p>Means are geometric and over complete runs only; the share of runs that were not \
          complete stands beside each name. Error bars and bands are 95 % confidence intervals \
-         over starts.</p>\n"
+         over starts. Where a bar or a dot is missing, no run was complete.</p>\n"
     );
     for measured in figures {
         let figure = &measured.figure;

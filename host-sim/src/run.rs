@@ -213,7 +213,7 @@ pub struct RobotOutcome {
     pub alive: bool,
 }
 
-/// The costs of assignments by both criteria of [Bautin2011]. The robots that get
+/// The costs of assignments by both criteria of \[Bautin2011\]. The robots that get
 /// a way in the same tick make up one assignment; a cost is the length of a way
 /// in steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Firmware in the loop: robots whose planners run in emulated chips.
 //!
 //! Each robot is a QEMU process that runs the image `robot` of the package
-//! `firmware`. A [`Proxy`](proxy::Proxy) stands for it in the fleet: a
+//! `firmware`. A `Proxy` stands for it in the fleet: a
 //! [`Planner`](planner_core::Planner) whose verbs are messages to the chip, so
 //! that world, media, trace and pictures are those of any other run. It decides
 //! nothing. Media and traces look at a robot's map: the proxy keeps a copy, fed

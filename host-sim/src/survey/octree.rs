@@ -1,4 +1,4 @@
-//! OctoMap's occupancy octree and its binary file format `.bt` [Hornung2013].
+//! OctoMap's occupancy octree and its binary file format `.bt` \[Hornung2013\].
 //!
 //! A file is a text header, `# Octomap OcTree binary file`, then lines `id OcTree`,
 //! `size NODES`, `res METRES`, `data`; then the inner nodes depth first, two bytes

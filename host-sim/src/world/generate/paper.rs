@@ -24,7 +24,7 @@ pub fn labyrinth2(seed: u64) -> World {
     with_starts("labyrinth2", grid)
 }
 
-/// A maze in the spirit of the MinPos slides [Bautin2011], of which only a picture
+/// A maze in the spirit of the MinPos slides \[Bautin2011\], of which only a picture
 /// was published: corridors of 3 cells, 61×61, no loop.
 pub fn maze(seed: u64) -> World {
     let grid = mazes::maze(Extent::new(61, 61), 3, 0, &mut Dice::new(seed));

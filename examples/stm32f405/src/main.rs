@@ -1,8 +1,8 @@
 //! A robot to start from: the planner in the main loop of an STM32F405.
 //!
 //! Four distance sensors look ahead, right, back and left; two wheels drive. To
-//! make it your robot, change the wiring here, [`rangers`] for another sensor and
-//! [`wheels`] for other motors: both need nothing but traits of `embedded-hal`.
+//! make it your robot, change the wiring here, `rangers` for another sensor and
+//! `wheels` for other motors: both need nothing but traits of `embedded-hal`.
 //! `docs/porting.md` tells more.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, bail};
 
-use crate::shell::{cargo, command};
+use crate::shell::{Command, cargo, command};
 use crate::{c_interface, documents, firmware, fuzz, install};
 
 /// One thing that must hold.
@@ -96,7 +96,7 @@ const CHECKS: &[Check] = &[
         name: "test",
         title: "unit, property, cross-crate and documentation tests",
         run: || {
-            cargo(["test", "--workspace", "--locked", "--no-fail-fast"])
+            repeatable(cargo(["test", "--workspace", "--locked", "--no-fail-fast"]))
                 .run()
                 .map(nothing)
         },
@@ -105,7 +105,7 @@ const CHECKS: &[Check] = &[
         name: "test-keyed",
         title: "planner-core's tests with signed frames",
         run: || {
-            cargo(["test", "-p=planner-core", "--features=keyed"])
+            repeatable(cargo(["test", "-p=planner-core", "--features=keyed"]))
                 .run()
                 .map(nothing)
         },
@@ -265,6 +265,16 @@ fn core_builds_for_chips() -> Result<String> {
         build().arg("--all-features").run()?;
     }
     Ok(CHIPS.join(", "))
+}
+
+/// The same cases of each property every time, so that a check says the same of the
+/// same sources; new cases are what `cargo test` and `cargo xtask soak` look for.
+fn repeatable(test: Command) -> Command {
+    const VARIABLE: &str = "PROPTEST_RNG_SEED";
+    match std::env::var_os(VARIABLE) {
+        Some(_) => test,
+        None => test.env(VARIABLE, "1"),
+    }
 }
 
 /// Miri is a thousand times slower than the chip: few cases of each property, and

@@ -73,7 +73,7 @@ impl FaultArgs {
                 ));
             }
         }
-        let each = |events: &[Event]| events.to_vec().into_iter().map(Event::parts);
+        let each = |events: &[Event]| events.iter().copied().map(Event::parts);
         Ok(Faults {
             deaths: each(&self.kill)
                 .map(|(robot, tick)| Death { robot, tick })

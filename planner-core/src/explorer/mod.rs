@@ -19,6 +19,7 @@
 
 mod closed;
 mod far;
+mod lean;
 mod maybe;
 mod others;
 mod path;
@@ -32,6 +33,7 @@ pub use role::{Role, exchange};
 
 use closed::ClosedCells;
 use far::{FarSearch, Outcome};
+use lean::Lean;
 use maybe::Maybe;
 use others::Others;
 use role::Plan;
@@ -234,11 +236,13 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// Decides where to go: a near frontier of the own, else what the far search
     /// found, else on with the plan, else a near frontier of others for the while.
     fn decide(&mut self, found: Option<Candidate>) {
+        let (now, id) = (self.around.now, self.id);
+        let knows_all = self.others.exploring().all(|other| other.is_fresh(now));
         let aim = Aim {
             goal: self.last_goal,
             hysteresis: i32::from(self.config.hysteresis),
+            lean: (!knows_all).then(|| Lean::of(id, self.around.position)),
         };
-        let (now, id) = (self.around.now, self.id);
         let bonus = self.near.load(&self.around, &mut self.work);
         let mine = if let Some(bonus) = &bonus {
             let others = self.others.exploring();

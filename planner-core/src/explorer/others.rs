@@ -19,12 +19,16 @@ pub(crate) struct Other {
 }
 
 impl Other {
+    /// Whether the robot was heard just now.
+    pub(crate) fn is_fresh(&self, now: u32) -> bool {
+        now.saturating_sub(self.heard_at) <= 1
+    }
+
     /// Where the robot may be: where it was heard last, and unless that was just
     /// now, where it was going. (Goals of robots that are heard all the time only
     /// keep others away from frontiers that they may pass first.)
     pub(crate) fn whereabouts(&self, now: u32) -> impl Iterator<Item = Cell> + use<> {
-        let is_fresh = now.saturating_sub(self.heard_at) <= 1;
-        let goal = self.goal.filter(|_| !is_fresh);
+        let goal = self.goal.filter(|_| !self.is_fresh(now));
         [Some(self.position), goal].into_iter().flatten()
     }
 }

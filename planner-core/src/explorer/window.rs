@@ -1,6 +1,7 @@
 //! The near decision: the best frontier within the 4×4 tiles around the robot, by
 //! waves over rows of 32 cells.
 
+use super::lean::{self, Lean};
 use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
@@ -88,6 +89,8 @@ pub(crate) struct Aim {
     pub(crate) goal: Option<Cell>,
     /// By how many steps.
     pub(crate) hysteresis: i32,
+    /// Set while the robot does not know where others went.
+    pub(crate) lean: Option<Lean>,
 }
 
 /// A frontier found, and the way to it.
@@ -255,9 +258,11 @@ impl NearSearch {
         }
 
         let mut best: Option<(i32, usize, u32, u32)> = None;
+        let largest_gain = aim.lean.map_or(0, |_| lean::LARGEST_GAIN);
         for length in 1..=(SIDE * SIDE) as u32 {
             // No frontier from here on can score better than this.
-            let bound = STEP * (length as i32 - aim.hysteresis) - PER_CELL * LARGEST_BONUS;
+            let bound =
+                STEP * (length as i32 - aim.hysteresis) - PER_CELL * LARGEST_BONUS - largest_gain;
             if best.is_some_and(|(score, ..)| score <= bound) {
                 break;
             }
@@ -280,12 +285,12 @@ impl NearSearch {
                 mine_left |= new_mine != 0;
                 let hits = new_mine & self.frontier.get(y).copied().unwrap_or(0);
                 for column in bits(u64::from(hits)) {
-                    let near_goal = aim
-                        .goal
-                        .is_some_and(|goal| goal.chebyshev(self.window.cell(y, column)) <= 3);
+                    let cell = self.window.cell(y, column);
+                    let near_goal = aim.goal.is_some_and(|goal| goal.chebyshev(cell) <= 3);
                     let preference = if near_goal { aim.hysteresis } else { 0 };
-                    let score =
-                        STEP * (length as i32 - preference) - PER_CELL * bonus.at(y, column);
+                    let score = STEP * (length as i32 - preference)
+                        - PER_CELL * bonus.at(y, column)
+                        - aim.lean.map_or(0, |lean| lean.gain(cell));
                     if best.is_none_or(|(least, ..)| score < least) {
                         best = Some((score, y, column, length));
                     }

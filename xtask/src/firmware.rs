@@ -88,6 +88,9 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
     ] {
         build_images(machine)?;
     }
+    cargo_build(TARGET)
+        .args(["--example=stack-overflow", "--example=hangs"])
+        .run()?;
     install::qemu()?;
     let output = show(
         cargo([
@@ -117,10 +120,24 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
     for line in &within {
         println!("{line}");
     }
-    let explorations =
-        entry(&output.stdout, "explorations").context("the tests do not report `explorations`")?;
-    Ok(format!("{explorations} explorations"))
+    // Each test that explores tells how often; a test that did not run tells nothing.
+    let explorations: Vec<u32> = entries(&output.stdout, "explorations")
+        .map(|count| count.parse().context("a number of explorations"))
+        .collect::<Result<_>>()?;
+    let sum: u32 = explorations.iter().sum();
+    if explorations.len() != EXPLORING_TESTS || sum < EXPLORATIONS {
+        bail!(
+            "expected at least {EXPLORATIONS} explorations from {EXPLORING_TESTS} tests, \
+             not {explorations:?}; were tests of host-sim/tests/chips renamed or taken out?"
+        );
+    }
+    Ok(format!("{sum} explorations with the same decisions"))
 }
+
+/// Tests of host-sim/tests/chips that let chips explore, and how many whole
+/// explorations they make at least.
+const EXPLORING_TESTS: usize = 3;
+const EXPLORATIONS: u32 = 50;
 
 /// Builds the image, runs it and shows its report.
 pub(crate) fn build_and_run() -> Result<()> {
@@ -299,6 +316,16 @@ pub(crate) fn path(image: &str, target: &str) -> PathBuf {
 }
 
 pub(crate) fn emulate(image: &str) -> Result<Output> {
+    emulate_with(image, &[])
+}
+
+/// Builds an image and runs it with a clock that counts instructions, a nanosecond each.
+pub(crate) fn build_and_count(image: &str) -> Result<Output> {
+    build(image, TARGET)?;
+    emulate_with(image, &["-icount", "shift=0"])
+}
+
+fn emulate_with(image: &str, options: &[&str]) -> Result<Output> {
     let run = command(install::QEMU)
         .args([
             "-machine",
@@ -309,6 +336,7 @@ pub(crate) fn emulate(image: &str) -> Result<Output> {
             "-serial",
             "none",
         ])
+        .args(options)
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
         .arg(path(image, TARGET));
     println!("$ {run}");
@@ -338,9 +366,14 @@ fn measure(path: &PathBuf) -> Result<Image> {
     })
 }
 
-/// The value of a `key: value` line.
+/// The value of the first `key: value` line.
 fn entry<'a>(report: &'a str, key: &str) -> Option<&'a str> {
+    entries(report, key).next()
+}
+
+/// The values of all `key: value` lines with this key.
+fn entries<'a>(report: &'a str, key: &str) -> impl Iterator<Item = &'a str> {
     report
         .lines()
-        .find_map(|line| line.strip_prefix(key)?.strip_prefix(": "))
+        .filter_map(move |line| line.strip_prefix(key)?.strip_prefix(": "))
 }

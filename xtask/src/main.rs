@@ -9,6 +9,7 @@ mod firmware;
 mod fuzz;
 mod install;
 mod shell;
+mod worst;
 
 use std::process::ExitCode;
 

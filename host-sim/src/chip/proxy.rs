@@ -93,6 +93,8 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         })?;
         match welcome {
             Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
+            Welcome::Grounded(problem) => Err(ChipError::Grounded { robot, problem }),
+            Welcome::NotHosted => Err(ChipError::NotHosted { robot }),
             Welcome::Ready(Hello {
                 version: VERSION,
                 clock_hz,
@@ -130,9 +132,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
             }
         };
         if let Some(call) = call {
-            let nanoseconds = u64::from(answer.cost.clock_ticks) * 1_000_000_000 / self.clock_hz;
-            let mut measured = self.book.measured.borrow_mut();
-            measured.count(call, nanoseconds, answer.cost.stack);
+            self.book.count(call, answer.cost, self.clock_hz);
         }
         self.state = answer.state;
         // Where the robot stands shows in no message but this one.
@@ -163,7 +163,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         if let Some(memory) = self.ask(None, &Request::Memory, read) {
             self.book.measured.borrow_mut().weigh(&memory);
         }
-        if let Some(Err(failure)) = self.chip.take().map(Chip::end) {
+        if let Some(Err(failure)) = self.chip.take().map(|chip| chip.end(&Request::End)) {
             self.fail(failure);
         }
     }

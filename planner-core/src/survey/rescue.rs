@@ -46,6 +46,17 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         }
     }
 
+    /// Starts anew, in place.
+    pub(crate) fn reset(&mut self) {
+        self.tried = [[0; TW]; TH];
+        self.known_columns = 0;
+        self.target = None;
+        self.edge = 0;
+        self.climbing = false;
+        self.patience = 0;
+        self.work = 0;
+    }
+
     /// The frontier that it flies to.
     pub(crate) const fn target(&self) -> Option<Cell> {
         self.target

@@ -31,6 +31,10 @@ pub enum SurveyorConfig {
 
 /// A verb of [`Surveyor`](planner_core::survey::Surveyor), or something about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one at a time, and no heap on the chip"
+)]
 pub enum SurveyRequest<'a> {
     /// Puts columns aside for [`Observe`](Self::Observe); [`SurveyReply::Done`].
     Look(Vec<Column, LOOK>),

@@ -15,6 +15,11 @@ fn main() {
     fs::copy(LAYOUT, Path::new(&out).join("memory.x"))
         .unwrap_or_else(|error| panic!("{LAYOUT}, the memory layout of the image: {error}"));
     println!("cargo::rustc-link-search={out}");
+    // Without DEFMT_LOG, defmt leaves out all logs but errors.
+    println!("cargo::rerun-if-env-changed=DEFMT_LOG");
+    if env::var_os("DEFMT_LOG").is_none() {
+        println!("cargo::rustc-env=DEFMT_LOG=debug");
+    }
     for argument in ["-Tlink.x", "-Tdefmt.x", "--nmagic"] {
         println!("cargo::rustc-link-arg={argument}");
     }

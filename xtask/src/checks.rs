@@ -162,8 +162,8 @@ const CHECKS: &[Check] = &[
     },
     Check {
         name: "example",
-        title: "the robot to start from builds for its chip",
-        run: firmware::example_builds,
+        title: "the robot to start from explores in the emulator, and its logs can be read",
+        run: firmware::example_explores,
     },
     Check {
         name: "miri",

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use object::{Object, ObjectSegment, ObjectSymbol};
 
 use crate::shell::{self, Command, Output, cargo, command};
-use crate::{budget, install};
+use crate::{budget, install, logs};
 
 /// The chip's target: Cortex-M4 with its floating-point unit.
 pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
@@ -187,8 +187,9 @@ pub(crate) fn explores() -> Result<String> {
     ))
 }
 
-/// The example that users start from links with the memory layout of its chip.
-pub(crate) fn example_builds() -> Result<String> {
+/// The example that users start from links with the memory layout of its chip, and
+/// explores a pretended room in the emulator; its logs can be read.
+pub(crate) fn example_explores() -> Result<String> {
     install::target(TARGET)?;
     cargo([
         "build",
@@ -197,13 +198,46 @@ pub(crate) fn example_builds() -> Result<String> {
         "--target",
         TARGET,
     ])
+    // The level of the logs is that of the example, whatever the user prefers.
+    .env("DEFMT_LOG", "debug")
     .run()?;
     let image = measure(&path("stm32f405", TARGET))?;
+    // What is flashed logs over RTT, which the emulator has not; but what it says
+    // can be read if its table can.
+    logs::table(&image.path)?;
+    install::qemu()?;
+    let output = emulate("emulated")?;
+    if !output.success() {
+        bail!(
+            "the example ended with {:?}\n{}",
+            output.status,
+            output.stderr
+        );
+    }
+    let lines = logs::decode(&path("emulated", TARGET), &output.bytes)?;
+    for line in &lines {
+        println!("{line}");
+    }
+    for expected in EXPECTED_LOGS {
+        if !lines.iter().any(|line| line.contains(expected)) {
+            bail!("the example never logs {expected:?}");
+        }
+    }
     Ok(format!(
-        "flash {}, static RAM {} bytes",
-        image.flash, image.statics
+        "flash {}, static RAM {} bytes; {} logs",
+        image.flash,
+        image.statics,
+        lines.len()
     ))
 }
+
+/// What the example logs: in its room everything can be reached, and one sensor once
+/// does not answer.
+const EXPECTED_LOGS: [&str; 3] = [
+    "DEBUG at Cell { x: 32, y: 32 }: learnt Learnt { cells: ",
+    "WARN sensor 0x10: NoAcknowledge(Address)",
+    "INFO Complete; ",
+];
 
 /// An image that runs out of stack faults at once, and says so.
 pub(crate) fn stack_overflow_faults() -> Result<String> {

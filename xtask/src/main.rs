@@ -8,6 +8,7 @@ mod documents;
 mod firmware;
 mod fuzz;
 mod install;
+mod logs;
 mod shell;
 mod worst;
 

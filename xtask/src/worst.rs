@@ -15,7 +15,11 @@ pub(crate) fn keeps_to_the_budget() -> Result<String> {
     install::qemu()?;
     let output = firmware::build_and_count("worst")?;
     if !output.success() {
-        bail!("the image ended with {:?}\n{}", output.status, output.stderr);
+        bail!(
+            "the image ended with {:?}\n{}",
+            output.status,
+            output.stderr
+        );
     }
     let figures = Figures::read(&output.stdout)?;
     let measured = figures.measured()?;
@@ -28,7 +32,9 @@ pub(crate) fn keeps_to_the_budget() -> Result<String> {
         println!("{line}");
     }
     let tick = figures.explorer("tick")?;
-    Ok(format!("a tick of the explorer takes at most {tick} instructions"))
+    Ok(format!(
+        "a tick of the explorer takes at most {tick} instructions"
+    ))
 }
 
 /// The largest figure of each name.
@@ -97,15 +103,6 @@ impl Figures {
         let ticks = ticks.into_iter().collect::<Result<Vec<_>>>()?;
         let by_robots = Self::growth(&ticks);
         measured.push(("worst_explorer_growth_by_robots_permille".into(), by_robots));
-        for planner in ["fcao", "coordinated_survey"] {
-            let mut stack = 0;
-            for call in ["observe", "tick", "merge"] {
-                let name = format!("{planner}_{call}");
-                measured.push((format!("worst_{name}_instructions"), self.figure(&name)?));
-                stack = stack.max(self.figure(&format!("{name}_stack"))?);
-            }
-            measured.push((format!("worst_{planner}_stack_bytes"), stack));
-        }
         measured.push((
             "worst_cao_step_instructions".into(),
             self.figure("cao_step")?,

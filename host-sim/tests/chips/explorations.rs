@@ -143,6 +143,7 @@ fn every_planner_decides_on_the_chip_as_on_the_host() {
 #[ignore = "needs QEMU and the image: cargo xtask test --only loop"]
 fn chips_without_a_floating_point_unit_decide_the_same() {
     let worlds = [(Family::Rooms, 1), (Family::Cave, 2)];
+    let mut explorations = 0;
     for machine in [Machine::Mps2An385, Machine::Microbit] {
         for (planner, (family, seed)) in PLANNERS
             .into_iter()
@@ -150,6 +151,8 @@ fn chips_without_a_floating_point_unit_decide_the_same() {
         {
             let world = Arc::new(generate(family, 32, 32, seed).unwrap());
             compare(&scenario(&world, planner, 3, Radio, 0.3, false), machine);
+            explorations += 1;
         }
     }
+    println!("explorations: {explorations}");
 }

@@ -24,7 +24,7 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
         (Terrain::gaussian(1, 40), 1, 0.0, 0.0),
         (Terrain::urban(2, 48), 3, 0.3, 0.0),
         (Terrain::gaussian(3, 60), 4, 0.6, 0.2),
-        (Terrain::urban(4, 100), 2, 0.0, 0.0),
+        (Terrain::gaussian(4, 100), 4, 0.3, 0.0),
     ];
     let planners = [
         (Planner::Fcao, "fcao"),

@@ -143,6 +143,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     // [Renzaglia2019 eq. 5]; reading: centred on the robot, scaled to the history's
     // reach, J less its mean.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn fit(&mut self, here: Point) -> Option<Model> {
         self.work = self.work.saturating_add((H * H) as u32);
         let reach = self.history.reach(here).max(self.config.limits.step);

@@ -117,6 +117,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     ///
     /// Cost: the columns on the straight way, or all tiles once for each column of the
     /// shortest way.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn next_place(&mut self, knowledge: &Knowledge<TW, TH>, target: Cell, place: Point) -> Point {
         let surface = knowledge.surface();
         let here = knowledge.position();

@@ -5,11 +5,11 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+mod cao;
+#[cfg(target_os = "none")]
 mod explorer;
 #[cfg(target_os = "none")]
 mod places;
-#[cfg(target_os = "none")]
-mod survey;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
@@ -21,7 +21,7 @@ fn main() -> std::process::ExitCode {
 fn main() -> ! {
     let timer = cortex_m::Peripherals::take().map(|chip| chip.SYST);
     let stopwatch = firmware::Stopwatch::start(timer.expect("nobody else takes the timer"));
-    match explorer::measure(&stopwatch).and_then(|()| survey::measure(&stopwatch)) {
+    match explorer::measure(&stopwatch).and_then(|()| cao::measure(&stopwatch)) {
         Ok(()) => firmware::end(firmware::Ending::Success),
         Err(core::fmt::Error) => panic!("the host does not take the report; enable semihosting"),
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow, bail};
-use object::{Object, ObjectSegment, ObjectSymbol};
+use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
 use crate::shell::{self, Command, Output, cargo, command};
 use crate::{budget, install, logs};
@@ -26,6 +26,8 @@ pub(crate) struct Image {
     flash: u64,
     /// Bytes of RAM that statics take; the stack is apart.
     statics: u64,
+    /// Bytes of code of planner-core.
+    planner: u64,
 }
 
 impl fmt::Display for Image {
@@ -172,6 +174,7 @@ pub(crate) fn explores() -> Result<String> {
         .context("the image does not report `peak stack bytes`")?;
     let measured = [
         ("firmware_flash_bytes", image.flash),
+        ("firmware_planner_code_bytes", image.planner),
         ("firmware_static_bytes", image.statics),
         ("firmware_peak_stack_bytes", stack),
     ];
@@ -397,6 +400,12 @@ fn measure(path: &PathBuf) -> Result<Image> {
         flash: flash(path)?,
         // RAM begins where the stack does.
         statics: address("__euninit")? - address("_stack_start")?,
+        planner: elf
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Text)
+            .filter(|symbol| symbol.name().is_ok_and(|it| it.contains("planner_core")))
+            .map(|symbol| symbol.size())
+            .sum(),
     })
 }
 

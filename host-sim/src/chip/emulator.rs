@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use bridge::{Inbox, MAX_MESSAGE, ReadError};
+use bridge::{Hello, Inbox, MAX_MESSAGE, ReadError, Request, VERSION, Welcome};
 use clap::ValueEnum;
 use planner_core::RobotId;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -116,6 +116,24 @@ impl Chip {
             inbox: Inbox::new(),
             outbox: [0; MAX_MESSAGE],
         })
+    }
+
+    /// Sets up a planner. Returns the ticks of the chip's clock in a second.
+    pub(super) fn set_up(&mut self, request: &Request<'_>) -> Result<u64, ChipError> {
+        let robot = self.robot;
+        match self.ask(request)? {
+            Welcome::Ready(Hello {
+                version: VERSION,
+                clock_hz,
+            }) => Ok(clock_hz.into()),
+            Welcome::Ready(Hello { version, .. }) => Err(ChipError::Dialogue {
+                robot,
+                problem: format!("version {version} instead of {VERSION}"),
+            }),
+            Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
+            Welcome::Grounded(problem) => Err(ChipError::Grounded { robot, problem }),
+            Welcome::NotHosted => Err(ChipError::NotHosted { robot }),
+        }
     }
 
     /// Sends a request and waits for the answer.

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use bridge::{Answer, Hello, Reply, Request, STAGED, State, VERSION, Welcome, fingerprint};
+use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
 use planner_core::explorer::Role;
 use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, FrameError, GridId, Heard, MAX_LEN, TileRecord};
@@ -80,33 +80,17 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         kind: PlannerKind,
         setup: Setup,
     ) -> Result<Chip, ChipError> {
-        let robot = self.id;
         let Setup { extent, start, .. } = setup;
         let planner = kind.on_chip(setup).ok_or(ChipError::HostOnly(kind))?;
         let link = planner.link();
         self.grid = GridId::of(extent, link.origin_mm, link.cell_mm);
-        let welcome = chip.ask(&Request::Start {
+        self.clock_hz = chip.set_up(&Request::Start {
             planner,
-            id: robot,
+            id: self.id,
             extent,
             start,
         })?;
-        match welcome {
-            Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
-            Welcome::Grounded(problem) => Err(ChipError::Grounded { robot, problem }),
-            Welcome::NotHosted => Err(ChipError::NotHosted { robot }),
-            Welcome::Ready(Hello {
-                version: VERSION,
-                clock_hz,
-            }) => {
-                self.clock_hz = clock_hz.into();
-                Ok(chip)
-            }
-            Welcome::Ready(Hello { version, .. }) => Err(ChipError::Dialogue {
-                robot,
-                problem: format!("version {version} instead of {VERSION}"),
-            }),
-        }
+        Ok(chip)
     }
 
     fn fail(&mut self, failure: ChipError) {

@@ -3,8 +3,8 @@
 use std::rc::Rc;
 
 use bridge::{
-    Hello, LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
-    VERSION, Welcome, relief, told,
+    LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig, relief,
+    told,
 };
 use planner_core::surface::{Column, Patch};
 use planner_core::survey::{Action, Knowledge, Motion, Status, Surveyor};
@@ -94,29 +94,12 @@ impl<const T: usize> SurveyProxy<T> {
         planner: SurveyorConfig,
         extent: Extent,
     ) -> Result<Chip, ChipError> {
-        let robot = RobotId(self.id);
-        let id = self.id;
-        let welcome = chip.ask(&Request::Survey {
+        self.clock_hz = chip.set_up(&Request::Survey {
             planner,
-            id,
+            id: self.id,
             extent,
         })?;
-        match welcome {
-            Welcome::Ready(Hello {
-                version: VERSION,
-                clock_hz,
-            }) => {
-                self.clock_hz = clock_hz.into();
-                Ok(chip)
-            }
-            Welcome::Ready(Hello { version, .. }) => Err(ChipError::Dialogue {
-                robot,
-                problem: format!("version {version} instead of {VERSION}"),
-            }),
-            Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
-            Welcome::Grounded(problem) => Err(ChipError::Grounded { robot, problem }),
-            Welcome::NotHosted => Err(ChipError::NotHosted { robot }),
-        }
+        Ok(chip)
     }
 
     fn fail(&mut self, failure: ChipError) {

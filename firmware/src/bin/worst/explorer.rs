@@ -95,7 +95,7 @@ fn enter<const N: usize>(bench: &mut Bench<N>, place: Place, others: u8) {
     let Bench { robot, map, .. } = bench;
     let _ = robot.reset(Config::new(), place.id(), extent::<N>(), place.own());
     let _ = map.reset(extent::<N>());
-    for (x, y) in (0..4).flat_map(|x| (0..4).map(move |y| (x, y))) {
+    for (x, y) in (0..N as u8).flat_map(|x| (0..N as u8).map(move |y| (x, y))) {
         let at = TileIndex::new(x, y);
         let mut tile = Tile::UNKNOWN;
         for bit in 0..64 {

@@ -31,6 +31,17 @@ pub(crate) enum Place {
     /// An open square with unknown cells here and there: fronts with frontiers and
     /// robots of all labels in every tile.
     Scattered(u8),
+    /// The whole map, open, with obstacles here and there and frontiers only far away:
+    /// waves of all labels run through many tiles at once.
+    Wide(u8),
+}
+
+/// Wide places that are tried.
+const WIDE: u8 = 16;
+
+/// A number that a cell has in all places of this seed.
+fn chance(seed: u8, Cell { x, y }: Cell) -> u32 {
+    Rng::new(u64::from(seed), (x as u64) << 8 | y as u64).next_u32()
 }
 
 /// The last row of the stairs; below them, behind a wall, is a hall.
@@ -43,14 +54,25 @@ impl Place {
     /// All that are tried.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let scattered = (0..SCATTERED).map(Self::Scattered);
+        let wide = (0..WIDE).map(Self::Wide);
         [Self::Stairs, Self::Enclosed, Self::Crowded]
             .into_iter()
             .chain(scattered)
+            .chain(wide)
     }
 
     /// What the cell is.
     pub(crate) fn kind(self, cell: Cell) -> Kind {
         let Cell { x, y } = cell;
+        if let Self::Wide(seed) = self {
+            let chance = chance(seed, cell);
+            let is_far = cell.chebyshev(self.own()) > 20;
+            return match chance {
+                chance if chance % 512 == 0 && is_far => Kind::Unknown,
+                chance if chance / 512 % 64 < u32::from(seed % 4) * 5 => Kind::Blocked,
+                _ => Kind::Free,
+            };
+        }
         if x >= SIDE || y >= SIDE {
             return Kind::Unknown;
         }
@@ -71,8 +93,7 @@ impl Place {
         }
         let is_free = match self {
             Self::Scattered(seed) => {
-                let chance = Rng::new(u64::from(seed), u64::from(x.unsigned_abs()) << 8 | y as u64)
-                    .next_u32();
+                let chance = chance(seed, cell);
                 // Ever more unknown cells, and ever more obstacles.
                 let (unknown, blocked) = (1 + u32::from(seed % 5), u32::from(seed / 5 % 5) * 4);
                 return match chance % 64 {
@@ -81,7 +102,7 @@ impl Place {
                     _ => Kind::Free,
                 };
             }
-            Self::Crowded => true,
+            Self::Crowded | Self::Wide(_) => true,
             _ if y > STAIRS => y > STAIRS + 1 && x > 1 && x != SIDE - 3,
             _ => is_stair(cell),
         };
@@ -98,6 +119,9 @@ impl Place {
 
     /// Where the robot stands: where the window is the whole place.
     pub(crate) fn own(self) -> Cell {
+        if let Self::Wide(_) = self {
+            return Cell::new(15, 14);
+        }
         let mut cell = Cell::new(15, 14);
         while self.kind(cell) != Kind::Free {
             cell.x += 1;
@@ -112,6 +136,10 @@ impl Place {
             Self::Stairs if number == 0 => Cell::new(0, STAIRS),
             Self::Stairs if number == 1 => Cell::new(SIDE - 2, 0),
             Self::Stairs | Self::Enclosed => Cell::new(2 + number, SIDE - 2),
+            Self::Wide(seed) => {
+                let step = 2 + i16::from(seed / 4);
+                Cell::new(step * (1 + number % 4), step * (1 + number / 4))
+            }
             Self::Crowded => Cell::new(11 + 3 * (number % 4), 10 + 3 * (number / 4)),
             Self::Scattered(_) => {
                 let mut cell = Cell::new(3 + 7 * (number % 4), 3 + 7 * (number / 4));

@@ -41,6 +41,44 @@ fn assert_bad_input(folder: &Path, arguments: &[&str], words: &[&str]) {
 }
 
 #[test]
+fn faults_by_option_happen() {
+    let folder = folder();
+    let faults = [
+        "--robots=3",
+        "--delay=3",
+        "--duplicate=0.3",
+        "--partition=2-9:1",
+        "--kill=2@4",
+        "--late=1@3",
+        "--restart=0@5",
+    ];
+    let run = |arguments: &[&str]| -> Value {
+        let arguments = [&["explore", "rooms.txt", "--json"], arguments].concat();
+        let output = host_sim(folder.path(), &arguments).assert().success();
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let (without, with) = (run(&faults[..1]), run(&faults));
+    assert_eq!(with["complete"], true);
+    assert!(with["robots"][2]["steps"].as_u64() < without["robots"][2]["steps"].as_u64());
+    for one in &faults[1..] {
+        let alone = run(&[faults[0], one]);
+        // A frame that comes twice says nothing new.
+        let changes = !one.starts_with("--duplicate");
+        assert_eq!(
+            alone["trace_digest"] != without["trace_digest"],
+            changes,
+            "{one}"
+        );
+    }
+    let empty = self::folder();
+    assert_bad_input(
+        empty.path(),
+        &["explore", "rooms.txt", "--robots=2", "--kill=2@4"],
+        &["--kill", "no robot 2", "0 to 1"],
+    );
+}
+
+#[test]
 fn a_complete_run_leaves_its_files_and_exits_with_0() {
     let folder = folder();
     let assert = host_sim(folder.path(), &["explore", "rooms.txt"])

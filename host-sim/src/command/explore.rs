@@ -10,7 +10,7 @@ use std::sync::Arc;
 use clap::Args;
 use host_sim::draw;
 use host_sim::measured::Measured;
-use host_sim::medium::{MediumKind, Reach};
+use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
 use host_sim::run::{self, Here, Host, Options, Progress, Scenario};
 use host_sim::summary::Summary;
@@ -20,6 +20,7 @@ use planner_core::Cell;
 use planner_core::radio::MAX_LEN;
 
 use super::Done;
+use super::faults::FaultArgs;
 use super::folder::Folder;
 use super::report;
 
@@ -49,20 +50,10 @@ pub(crate) struct Explore {
     /// robot; 0: never.
     #[arg(long, value_name = "D", default_value_t = 1)]
     sync: u32,
-    /// Share of messages lost, 0 to 1.
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
-    loss: f64,
-    /// Who hears whom: all, sight (no obstacle between), or the number of cells
-    /// that robots may be apart.
-    #[arg(long, value_name = "WHO", default_value = "all", value_parser = parse_reach)]
-    radio_range: Reach,
     /// Bytes that a robot may send by radio in a tick on average; less than a
     /// frame: one every few ticks.
     #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
     byte_budget: u16,
-    /// Share of radio frames that arrive with wrong bits or cut short, 0 to 1.
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
-    corrupt: f64,
     /// Seed of all chance in the run.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -88,6 +79,8 @@ pub(crate) struct Explore {
     /// Maps with a resolution: side of a cell in metres.
     #[arg(long, value_name = "METRES")]
     cell_size: Option<f64>,
+    #[command(flatten)]
+    faults: FaultArgs,
 }
 
 /// One value of `--start`.
@@ -199,11 +192,11 @@ impl Explore {
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.sync = self.sync;
-        scenario.loss = self.loss;
+        scenario.loss = self.faults.loss;
+        scenario.air = self.faults.air();
+        scenario.faults = self.faults.of_robots(self.robots.into())?;
         scenario.medium = self.medium;
         scenario.byte_budget = self.byte_budget;
-        scenario.air.reach = self.radio_range;
-        scenario.air.corruption = self.corrupt;
         scenario.seed = self.seed;
         scenario.solid = self.solid;
         scenario.max_ticks = self.max_ticks.unwrap_or(scenario.max_ticks);
@@ -246,16 +239,5 @@ pub(super) fn parse_share(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (nothing) to 1 (everything), for example 0.6".into()),
-    }
-}
-
-fn parse_reach(text: &str) -> Result<Reach, String> {
-    match text {
-        "all" => Ok(Reach::Everywhere),
-        "sight" => Ok(Reach::LineOfSight),
-        _ => text
-            .parse()
-            .map(Reach::Cells)
-            .map_err(|_| "expected all, sight or a number of cells, for example 12".into()),
     }
 }

@@ -2,6 +2,7 @@
 
 mod compare;
 mod explore;
+mod faults;
 mod figures;
 #[cfg(unix)]
 mod firmware;

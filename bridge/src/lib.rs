@@ -2,7 +2,8 @@
 //! the image of one robot, which runs the planner.
 //!
 //! It is in lock step: the simulator sends a [`Request`], one verb of
-//! [`Planner`](planner_core::Planner), and waits for the [`Answer`]. Either goes
+//! [`Planner`](planner_core::Planner), and waits for the [`Answer`]; for a robot
+//! that flies, a [`SurveyRequest`] and a [`SurveyAnswer`]. Either goes
 //! as [postcard](https://postcard.jamesmunns.com) behind its length in two bytes,
 //! little-endian.
 #![no_std]
@@ -12,13 +13,18 @@
 extern crate std;
 
 mod message;
+mod survey;
 mod wire;
 
 pub use message::{
     Answer, Cost, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome,
     fingerprint,
 };
+pub use survey::{
+    LOOK, PatchRecord, SEEN, Seen, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
+    relief, told,
+};
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 
 /// Raised whenever a message changes: both sides must be built from one source.
-pub const VERSION: u8 = 1;
+pub const VERSION: u8 = 2;

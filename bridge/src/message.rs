@@ -3,10 +3,13 @@
 use heapless::Vec;
 use planner_core::map::{ExtentError, TileIndex};
 use planner_core::radio::{FrameError, Heard, LinkConfig, TileRecord};
+use planner_core::survey::SetupError;
 use planner_core::{
     Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, explorer, local_frontiers,
 };
 use serde::{Deserialize, Serialize};
+
+use crate::SurveyorConfig;
 
 /// Tiles of one [`Request::Stage`] at most.
 pub const STAGED: usize = 12;
@@ -34,9 +37,10 @@ impl PlannerConfig {
 }
 
 /// What the simulator asks for: a verb of the planner, or something about it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request<'a> {
-    /// Sets up a planner. The first request; answered by a [`Welcome`].
+    /// Sets up a planner. The first request, or else [`Survey`](Self::Survey);
+    /// answered by a [`Welcome`].
     Start {
         /// Which one.
         planner: PlannerConfig,
@@ -46,6 +50,16 @@ pub enum Request<'a> {
         extent: Extent,
         /// Where the robot stands.
         start: Cell,
+    },
+    /// Sets up a planner of a robot that flies; answered by a [`Welcome`]. Whatever
+    /// follows is a [`SurveyRequest`](crate::SurveyRequest).
+    Survey {
+        /// Which one.
+        planner: SurveyorConfig,
+        /// The robot's number.
+        id: u8,
+        /// Size of the surface.
+        extent: Extent,
     },
     /// [`Reply::Learnt`].
     Observe(Sighting),
@@ -135,13 +149,17 @@ pub enum Reply<'a> {
     Memory(Memory),
 }
 
-/// The answer to [`Request::Start`].
+/// The answer to [`Request::Start`] and [`Request::Survey`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Welcome {
     /// The planner is set up.
     Ready(Hello),
     /// The grid does not fit the image's map; the image ends.
     Refused(ExtentError),
+    /// The robot cannot fly like this; the image ends.
+    Grounded(SetupError),
+    /// The image hosts no planner of this kind; it ends.
+    NotHosted,
 }
 
 /// Who answers.

@@ -68,9 +68,34 @@ fn misaligned_is_answered() {
         PlannerResult::Misaligned
     );
     let ready = created(&mut memory, CONFIG);
-    let config = CONFIG;
-    let config = (&raw const config).wrapping_byte_add(1);
-    assert_eq!(planner_create(ready, config), PlannerResult::Misaligned);
+    // Large enough and aligned for anything, and then one byte further.
+    let mut place = [0u64; 8];
+    let crooked = place.as_mut_ptr().wrapping_byte_add(1);
+    let straight = place.as_mut_ptr();
+    let pose = PlannerPose {
+        x: 1.5,
+        y: 1.5,
+        heading: 0.0,
+    };
+    let centre = CONFIG.start;
+    for result in [
+        planner_create(ready, crooked.cast()),
+        planner_observe_scan(ready, crooked.cast(), 4.0, null(), 0),
+        planner_observe_scan(ready, &pose, 4.0, crooked.cast(), 1),
+        planner_observe_cells(ready, centre, crooked.cast(), 1),
+        planner_tick(ready, crooked.cast()),
+        planner_transmit(ready, straight.cast(), crooked.cast()),
+        planner_known(ready, crooked.cast(), straight.cast()),
+        planner_known(ready, straight.cast(), crooked.cast()),
+    ] {
+        assert_eq!(result, PlannerResult::Misaligned);
+    }
+    // Frames are bytes: they lie anywhere.
+    let frame = crooked.cast::<u8>();
+    assert_eq!(
+        planner_transmit(ready, frame, straight.cast()),
+        PlannerResult::Ok
+    );
 }
 
 #[test]

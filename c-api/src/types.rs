@@ -151,9 +151,9 @@ pub struct PlannerAction {
     pub at: PlannerCell,
 }
 
-/// Enumerations take one byte in the ABI of bare Arm chips; C checks the same.
+/// Enumerations take one byte in the ABI of bare Arm chips; the header checks the same.
 #[cfg(all(target_arch = "arm", target_os = "none"))]
-const _: () = assert!(size_of::<PlannerAction>() == 12);
+const _: () = assert!(size_of::<PlannerAction>() == 12 && size_of::<PlannerResult>() == 1);
 
 impl From<&PlannerPose> for Pose {
     fn from(pose: &PlannerPose) -> Self {

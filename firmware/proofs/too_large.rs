@@ -8,8 +8,8 @@ fn main() -> std::process::ExitCode {
 
 /// As large as RAM in memory-layout.x; the flag of the cell is one byte too many.
 #[cfg(target_os = "none")]
-static TOO_LARGE: static_cell::ConstStaticCell<[u8; 120 * 1024]> =
-    static_cell::ConstStaticCell::new([0; 120 * 1024]);
+static TOO_LARGE: static_cell::ConstStaticCell<[u8; 112 * 1024]> =
+    static_cell::ConstStaticCell::new([0; 112 * 1024]);
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]

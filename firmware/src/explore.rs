@@ -1,7 +1,7 @@
 //! The robot's main loop, with a world and motors that are only pretended.
 
 use planner_core::sight::look;
-use planner_core::{Action, Motion, Planner, Stop};
+use planner_core::{Action, Cell, Motion, Planner, Stop};
 
 use crate::World;
 
@@ -19,13 +19,17 @@ pub struct Exploration {
 
 /// Lets `planner`, which stands at the start of `world`, explore until it stops.
 ///
+/// The planner is behind a pointer as in any image that can host several: no call is
+/// inlined, and none takes stack when it is over.
+///
 /// It is given eight ticks for every cell; a planner that takes more goes round
 /// in circles.
 pub fn explore<const TW: usize, const TH: usize>(
-    planner: &mut impl Planner<TW, TH>,
+    planner: &mut dyn Planner<TW, TH>,
     world: &World,
     range: u8,
 ) -> Exploration {
+    let planner = core::hint::black_box(planner);
     let mut position = world.start();
     let mut exploration = Exploration {
         ticks: 0,
@@ -35,7 +39,7 @@ pub fn explore<const TW: usize, const TH: usize>(
     };
     while exploration.ticks < 8 * world.extent().cells() {
         exploration.ticks += 1;
-        planner.observe(&look(position, range, |cell| world.is_blocked(cell)));
+        observe(planner, world, position, range);
         let action = planner.tick();
         exploration.work = exploration.work.max(planner.work());
         match action {
@@ -57,4 +61,16 @@ pub fn explore<const TW: usize, const TH: usize>(
         }
     }
     exploration
+}
+
+/// Looks around. A function of its own, so that the sighting is not on the stack
+/// any more when the planner decides.
+#[inline(never)]
+fn observe<const TW: usize, const TH: usize>(
+    planner: &mut dyn Planner<TW, TH>,
+    world: &World,
+    position: Cell,
+    range: u8,
+) {
+    planner.observe(&look(position, range, |cell| world.is_blocked(cell)));
 }

@@ -7,6 +7,7 @@ use crate::math;
 /// cell; `z` grows upwards and is 0 at the bottom of the mapped box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Point {
     /// East.
     pub x: f32,

@@ -12,6 +12,14 @@ pub struct Rng {
 }
 
 impl Rng {
+    /// A generator of nothing but zeros, which is itself all zero.
+    pub(crate) const fn vacant() -> Self {
+        Self {
+            state: 0,
+            increment: 0,
+        }
+    }
+
     /// The generator of `seed` and `stream`; other streams are independent sequences.
     pub const fn new(seed: u64, stream: u64) -> Self {
         let increment = (stream << 1) | 1;

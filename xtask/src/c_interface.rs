@@ -79,6 +79,7 @@ pub(crate) fn example_explores() -> Result<String> {
         .args(["-Wl,--gc-sections,-z,noexecstack", "-o"])
         .arg(&image)
         .run()?;
+    other_enumerations_do_not_compile()?;
     let output = firmware::emulate("c-example")?;
     print!("{}{}", output.stdout, output.stderr);
     if !output.success() || !format!("{}{}", output.stdout, output.stderr).contains("complete") {
@@ -86,4 +87,22 @@ pub(crate) fn example_explores() -> Result<String> {
     }
     let flash = firmware::flash(&image)?;
     Ok(format!("flash {flash} bytes"))
+}
+
+/// With enumerations of four bytes, structures would not look as the library thinks:
+/// the header says so.
+fn other_enumerations_do_not_compile() -> Result<()> {
+    let compile = command(install::C_COMPILER)
+        .args(["-mcpu=cortex-m4", "-mthumb", "-std=c11"])
+        .args([
+            "-fno-short-enums",
+            "-fsyntax-only",
+            "c-api/include/planner.h",
+        ]);
+    println!("$ {compile}");
+    let output = compile.output()?;
+    if output.success() || !output.stderr.contains("compile with -fshort-enums") {
+        bail!("{HEADER} must refuse -fno-short-enums");
+    }
+    Ok(())
 }

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow, bail};
-use object::{Object, ObjectSegment, ObjectSymbol};
+use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
 use crate::shell::{self, Command, Output, cargo, command};
-use crate::{budget, install};
+use crate::{budget, install, logs};
 
 /// The chip's target: Cortex-M4 with its floating-point unit.
 pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
@@ -26,6 +26,8 @@ pub(crate) struct Image {
     flash: u64,
     /// Bytes of RAM that statics take; the stack is apart.
     statics: u64,
+    /// Bytes of code of planner-core.
+    planner: u64,
 }
 
 impl fmt::Display for Image {
@@ -88,6 +90,9 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
     ] {
         build_images(machine)?;
     }
+    cargo_build(TARGET)
+        .args(["--example=stack-overflow", "--example=hangs"])
+        .run()?;
     install::qemu()?;
     let output = show(
         cargo([
@@ -117,10 +122,24 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
     for line in &within {
         println!("{line}");
     }
-    let explorations =
-        entry(&output.stdout, "explorations").context("the tests do not report `explorations`")?;
-    Ok(format!("{explorations} explorations"))
+    // Each test that explores tells how often; a test that did not run tells nothing.
+    let explorations: Vec<u32> = entries(&output.stdout, "explorations")
+        .map(|count| count.parse().context("a number of explorations"))
+        .collect::<Result<_>>()?;
+    let sum: u32 = explorations.iter().sum();
+    if explorations.len() != EXPLORING_TESTS || sum < EXPLORATIONS {
+        bail!(
+            "expected at least {EXPLORATIONS} explorations from {EXPLORING_TESTS} tests, \
+             not {explorations:?}; were tests of host-sim/tests/chips renamed or taken out?"
+        );
+    }
+    Ok(format!("{sum} explorations with the same decisions"))
 }
+
+/// Tests of host-sim/tests/chips that let chips explore, and how many whole
+/// explorations they make at least.
+const EXPLORING_TESTS: usize = 3;
+const EXPLORATIONS: u32 = 50;
 
 /// Builds the image, runs it and shows its report.
 pub(crate) fn build_and_run() -> Result<()> {
@@ -155,6 +174,7 @@ pub(crate) fn explores() -> Result<String> {
         .context("the image does not report `peak stack bytes`")?;
     let measured = [
         ("firmware_flash_bytes", image.flash),
+        ("firmware_planner_code_bytes", image.planner),
         ("firmware_static_bytes", image.statics),
         ("firmware_peak_stack_bytes", stack),
     ];
@@ -170,8 +190,9 @@ pub(crate) fn explores() -> Result<String> {
     ))
 }
 
-/// The example that users start from links with the memory layout of its chip.
-pub(crate) fn example_builds() -> Result<String> {
+/// The example that users start from links with the memory layout of its chip, and
+/// explores a pretended room in the emulator; its logs can be read.
+pub(crate) fn example_explores() -> Result<String> {
     install::target(TARGET)?;
     cargo([
         "build",
@@ -180,13 +201,46 @@ pub(crate) fn example_builds() -> Result<String> {
         "--target",
         TARGET,
     ])
+    // The level of the logs is that of the example, whatever the user prefers.
+    .env("DEFMT_LOG", "debug")
     .run()?;
     let image = measure(&path("stm32f405", TARGET))?;
+    // What is flashed logs over RTT, which the emulator has not; but what it says
+    // can be read if its table can.
+    logs::table(&image.path)?;
+    install::qemu()?;
+    let output = emulate("emulated")?;
+    if !output.success() {
+        bail!(
+            "the example ended with {:?}\n{}",
+            output.status,
+            output.stderr
+        );
+    }
+    let lines = logs::decode(&path("emulated", TARGET), &output.bytes)?;
+    for line in &lines {
+        println!("{line}");
+    }
+    for expected in EXPECTED_LOGS {
+        if !lines.iter().any(|line| line.contains(expected)) {
+            bail!("the example never logs {expected:?}");
+        }
+    }
     Ok(format!(
-        "flash {}, static RAM {} bytes",
-        image.flash, image.statics
+        "flash {}, static RAM {} bytes; {} logs",
+        image.flash,
+        image.statics,
+        lines.len()
     ))
 }
+
+/// What the example logs: in its room everything can be reached, and one sensor once
+/// does not answer.
+const EXPECTED_LOGS: [&str; 3] = [
+    "DEBUG at Cell { x: 32, y: 32 }: learnt Learnt { cells: ",
+    "WARN sensor 0x10: NoAcknowledge(Address)",
+    "INFO Complete; ",
+];
 
 /// An image that runs out of stack faults at once, and says so.
 pub(crate) fn stack_overflow_faults() -> Result<String> {
@@ -299,6 +353,16 @@ pub(crate) fn path(image: &str, target: &str) -> PathBuf {
 }
 
 pub(crate) fn emulate(image: &str) -> Result<Output> {
+    emulate_with(image, &[])
+}
+
+/// Builds an image and runs it with a clock that counts instructions, a nanosecond each.
+pub(crate) fn build_and_count(image: &str) -> Result<Output> {
+    build(image, TARGET)?;
+    emulate_with(image, &["-icount", "shift=0"])
+}
+
+fn emulate_with(image: &str, options: &[&str]) -> Result<Output> {
     let run = command(install::QEMU)
         .args([
             "-machine",
@@ -309,6 +373,7 @@ pub(crate) fn emulate(image: &str) -> Result<Output> {
             "-serial",
             "none",
         ])
+        .args(options)
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
         .arg(path(image, TARGET));
     println!("$ {run}");
@@ -335,12 +400,23 @@ fn measure(path: &PathBuf) -> Result<Image> {
         flash: flash(path)?,
         // RAM begins where the stack does.
         statics: address("__euninit")? - address("_stack_start")?,
+        planner: elf
+            .symbols()
+            .filter(|symbol| symbol.kind() == SymbolKind::Text)
+            .filter(|symbol| symbol.name().is_ok_and(|it| it.contains("planner_core")))
+            .map(|symbol| symbol.size())
+            .sum(),
     })
 }
 
-/// The value of a `key: value` line.
+/// The value of the first `key: value` line.
 fn entry<'a>(report: &'a str, key: &str) -> Option<&'a str> {
+    entries(report, key).next()
+}
+
+/// The values of all `key: value` lines with this key.
+fn entries<'a>(report: &'a str, key: &str) -> impl Iterator<Item = &'a str> {
     report
         .lines()
-        .find_map(|line| line.strip_prefix(key)?.strip_prefix(": "))
+        .filter_map(move |line| line.strip_prefix(key)?.strip_prefix(": "))
 }

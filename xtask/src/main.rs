@@ -8,7 +8,9 @@ mod documents;
 mod firmware;
 mod fuzz;
 mod install;
+mod logs;
 mod shell;
+mod worst;
 
 use std::process::ExitCode;
 

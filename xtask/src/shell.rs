@@ -31,6 +31,8 @@ pub(crate) struct Command {
 pub(crate) struct Output {
     pub(crate) status: Option<i32>,
     pub(crate) stdout: String,
+    /// What `stdout` was before it was made text.
+    pub(crate) bytes: Vec<u8>,
     pub(crate) stderr: String,
 }
 
@@ -160,6 +162,7 @@ fn read(output: &std::process::Output) -> Output {
     Output {
         status: output.status.code(),
         stdout: String::from_utf8_lossy(&output.stdout).into_owned(),
+        bytes: output.stdout.clone(),
         stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
 }

@@ -52,3 +52,11 @@ fn main() -> ! {
     };
     robot::run(rangers::Rangers::new(bus), wheels)
 }
+
+/// The robot has stopped, for good.
+#[cfg(target_os = "none")]
+fn rest() -> ! {
+    loop {
+        cortex_m::asm::wfi();
+    }
+}

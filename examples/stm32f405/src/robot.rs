@@ -65,9 +65,7 @@ where
             Action::Wait => wheels.wait(),
             Action::Stop(stop) => {
                 defmt::info!("{}; {=u32} cells known", stop, explorer.map().known_cells());
-                loop {
-                    cortex_m::asm::wfi();
-                }
+                crate::rest();
             }
         }
     }

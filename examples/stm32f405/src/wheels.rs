@@ -11,7 +11,7 @@ use planner_core::Direction;
 /// Time for the way from one cell to the next.
 const STEP_MS: u32 = 900;
 /// Time for a quarter turn on the spot.
-const TURN_MS: u32 = 450;
+pub(crate) const TURN_MS: u32 = 450;
 /// Share of full power.
 const POWER_PERCENT: u8 = 40;
 

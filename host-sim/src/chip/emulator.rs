@@ -7,18 +7,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
-use bridge::{Inbox, MAX_MESSAGE, ReadError, Request};
+use bridge::{Hello, Inbox, MAX_MESSAGE, ReadError, Request, VERSION, Welcome};
 use clap::ValueEnum;
 use planner_core::RobotId;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::error::ChipError;
 
 const QEMU: &str = "qemu-system-arm";
-
-/// Many times what the longest answer takes on a busy machine.
-const LIMIT: Duration = Duration::from_secs(60);
 
 /// A board that QEMU emulates and that the image is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -64,13 +61,20 @@ pub(super) struct Chip {
     answers: ChildStdout,
     /// What the image and QEMU print.
     messages: File,
+    /// How long an answer is waited for.
+    limit: Duration,
     inbox: Inbox,
     outbox: [u8; MAX_MESSAGE],
 }
 
 impl Chip {
     /// Starts the image.
-    pub(super) fn start(robot: RobotId, machine: Machine, image: &Path) -> Result<Self, ChipError> {
+    pub(super) fn start(
+        robot: RobotId,
+        machine: Machine,
+        image: &Path,
+        limit: Duration,
+    ) -> Result<Self, ChipError> {
         if !image.is_file() {
             let path = image.to_path_buf();
             return Err(ChipError::NoImage { path, machine });
@@ -108,21 +112,40 @@ impl Chip {
             requests: requests.expect("it is a pipe"),
             answers: answers.expect("it is a pipe"),
             messages,
+            limit,
             inbox: Inbox::new(),
             outbox: [0; MAX_MESSAGE],
         })
     }
 
+    /// Sets up a planner. Returns the ticks of the chip's clock in a second.
+    pub(super) fn set_up(&mut self, request: &Request<'_>) -> Result<u64, ChipError> {
+        let robot = self.robot;
+        match self.ask(request)? {
+            Welcome::Ready(Hello {
+                version: VERSION,
+                clock_hz,
+            }) => Ok(clock_hz.into()),
+            Welcome::Ready(Hello { version, .. }) => Err(ChipError::Dialogue {
+                robot,
+                problem: format!("version {version} instead of {VERSION}"),
+            }),
+            Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
+            Welcome::Grounded(problem) => Err(ChipError::Grounded { robot, problem }),
+            Welcome::NotHosted => Err(ChipError::NotHosted { robot }),
+        }
+    }
+
     /// Sends a request and waits for the answer.
     pub(super) fn ask<'a, T: Deserialize<'a>>(
         &'a mut self,
-        request: &Request<'_>,
+        request: &impl Serialize,
     ) -> Result<T, ChipError> {
         if let Err(error) = self.send(request).map_err(ReadError::Stream) {
             return Err(self.explain(error));
         }
-        let answers = &mut self.answers;
-        if let Err(error) = self.inbox.read(|place| read_within(answers, place)) {
+        let (answers, limit) = (&mut self.answers, self.limit);
+        if let Err(error) = self.inbox.read(|place| read_within(answers, limit, place)) {
             return Err(self.explain(error));
         }
         let robot = self.robot;
@@ -132,14 +155,14 @@ impl Chip {
         })
     }
 
-    fn send(&mut self, request: &Request<'_>) -> io::Result<()> {
+    fn send(&mut self, request: &impl Serialize) -> io::Result<()> {
         let bytes = bridge::encode(request, &mut self.outbox).map_err(io::Error::other)?;
         self.requests.write_all(bytes)
     }
 
-    /// Lets the image end by itself.
-    pub(super) fn end(mut self) -> Result<(), ChipError> {
-        let ended = self.send(&Request::End).and_then(|()| self.emulator.wait());
+    /// Lets the image end by itself; `request` asks for that.
+    pub(super) fn end(mut self, request: &impl Serialize) -> Result<(), ChipError> {
+        let ended = self.send(request).and_then(|()| self.emulator.wait());
         match ended {
             Ok(status) if status.success() => Ok(()),
             _ => Err(self.explain(ReadError::Closed)),
@@ -155,7 +178,7 @@ impl Chip {
                 let _ = self.emulator.kill();
                 ChipError::Silent {
                     robot,
-                    seconds: LIMIT.as_secs(),
+                    seconds: self.limit.as_secs(),
                     messages: self.messages(),
                 }
             }
@@ -198,9 +221,9 @@ impl Drop for Chip {
     }
 }
 
-/// Reads what there is, and waits for it no longer than [`LIMIT`].
-fn read_within(answers: &mut ChildStdout, place: &mut [u8]) -> io::Result<usize> {
-    let limit = Timespec::try_from(LIMIT).map_err(io::Error::other)?;
+/// Reads what there is, and waits for it no longer than `limit`.
+fn read_within(answers: &mut ChildStdout, limit: Duration, place: &mut [u8]) -> io::Result<usize> {
+    let limit = Timespec::try_from(limit).map_err(io::Error::other)?;
     let ready = poll(&mut [PollFd::new(answers, PollFlags::IN)], Some(&limit))?;
     if ready == 0 {
         return Err(io::ErrorKind::TimedOut.into());

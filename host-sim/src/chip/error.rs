@@ -6,6 +6,7 @@ use std::process::ExitStatus;
 
 use planner_core::RobotId;
 use planner_core::map::ExtentError;
+use planner_core::survey::SetupError;
 use thiserror::Error;
 
 use super::emulator::Machine;
@@ -48,6 +49,24 @@ pub enum ChipError {
         robot: RobotId,
         /// What does not fit.
         problem: ExtentError,
+    },
+    /// See the message.
+    #[error("robot {} cannot fly like this: {problem}", robot.0)]
+    Grounded {
+        /// Which robot.
+        robot: RobotId,
+        /// Why.
+        problem: SetupError,
+    },
+    /// See the message.
+    #[error(
+        "the image in the chip of robot {} hosts no planner for robots that fly; \
+         the one for netduinoplus2 does",
+        robot.0
+    )]
+    NotHosted {
+        /// Whose chip.
+        robot: RobotId,
     },
     /// See the message.
     #[error("the chip of robot {} ended ({status}){}", robot.0, quoted(messages))]

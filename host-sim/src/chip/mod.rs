@@ -6,11 +6,13 @@
 //! that world, media, trace and pictures are those of any other run. It decides
 //! nothing. Media and traces look at a robot's map: the proxy keeps a copy, fed
 //! with what the chip is fed with, and in every tick the chip's fingerprint of its
-//! own map must be that of the copy.
+//! own map must be that of the copy. A `SurveyProxy` is the same for a robot that
+//! flies.
 
 mod emulator;
 mod error;
 mod proxy;
+mod surveyor;
 mod swarm;
 
 pub use emulator::Machine;

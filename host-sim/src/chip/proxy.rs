@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use bridge::{Answer, Hello, Reply, Request, STAGED, State, VERSION, Welcome, fingerprint};
+use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
 use planner_core::explorer::Role;
 use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, FrameError, GridId, Heard, MAX_LEN, TileRecord};
@@ -80,31 +80,17 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         kind: PlannerKind,
         setup: Setup,
     ) -> Result<Chip, ChipError> {
-        let robot = self.id;
         let Setup { extent, start, .. } = setup;
         let planner = kind.on_chip(setup).ok_or(ChipError::HostOnly(kind))?;
         let link = planner.link();
         self.grid = GridId::of(extent, link.origin_mm, link.cell_mm);
-        let welcome = chip.ask(&Request::Start {
+        self.clock_hz = chip.set_up(&Request::Start {
             planner,
-            id: robot,
+            id: self.id,
             extent,
             start,
         })?;
-        match welcome {
-            Welcome::Refused(problem) => Err(ChipError::Extent { robot, problem }),
-            Welcome::Ready(Hello {
-                version: VERSION,
-                clock_hz,
-            }) => {
-                self.clock_hz = clock_hz.into();
-                Ok(chip)
-            }
-            Welcome::Ready(Hello { version, .. }) => Err(ChipError::Dialogue {
-                robot,
-                problem: format!("version {version} instead of {VERSION}"),
-            }),
-        }
+        Ok(chip)
     }
 
     fn fail(&mut self, failure: ChipError) {
@@ -130,9 +116,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
             }
         };
         if let Some(call) = call {
-            let nanoseconds = u64::from(answer.cost.clock_ticks) * 1_000_000_000 / self.clock_hz;
-            let mut measured = self.book.measured.borrow_mut();
-            measured.count(call, nanoseconds, answer.cost.stack);
+            self.book.count(call, answer.cost, self.clock_hz);
         }
         self.state = answer.state;
         // Where the robot stands shows in no message but this one.
@@ -163,7 +147,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         if let Some(memory) = self.ask(None, &Request::Memory, read) {
             self.book.measured.borrow_mut().weigh(&memory);
         }
-        if let Some(Err(failure)) = self.chip.take().map(Chip::end) {
+        if let Some(Err(failure)) = self.chip.take().map(|chip| chip.end(&Request::End)) {
             self.fail(failure);
         }
     }

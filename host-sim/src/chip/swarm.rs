@@ -3,21 +3,31 @@
 use std::cell::{OnceCell, RefCell};
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::time::Duration;
 
-use planner_core::Planner;
+use bridge::{Cost, SurveyorConfig};
+use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
+use planner_core::{Extent, Planner, RobotId};
 
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
 use super::proxy::Proxy;
-use crate::measured::Measured;
+use super::surveyor::SurveyProxy;
+use crate::measured::{Call, Measured};
 use crate::planners::{PlannerKind, Setup};
 use crate::run::Host;
+use crate::survey;
+
+/// Many times what the longest answer takes on a busy machine.
+const LIMIT: Duration = Duration::from_secs(60);
 
 /// Hosts the planners of a run in emulated chips.
 #[derive(Clone)]
 pub struct Swarm {
     machine: Machine,
     image: PathBuf,
+    /// How long an answer is waited for.
+    limit: Duration,
     book: Rc<Book>,
 }
 
@@ -26,6 +36,16 @@ pub(super) struct Book {
     /// The first failure. The run is worth nothing after it, and ends.
     pub(super) failure: OnceCell<ChipError>,
     pub(super) measured: RefCell<Measured>,
+}
+
+impl Book {
+    /// Notes what a call took. The emulated chip's clock counts instructions: each
+    /// takes a nanosecond.
+    pub(super) fn count(&self, call: Call, cost: Cost, clock_hz: u64) {
+        let instructions = u64::from(cost.clock_ticks) * 1_000_000_000 / clock_hz;
+        let mut measured = self.measured.borrow_mut();
+        measured.count(call, instructions, cost.stack);
+    }
 }
 
 impl Swarm {
@@ -38,11 +58,19 @@ impl Swarm {
         Self {
             machine,
             image,
+            limit: LIMIT,
             book: Rc::new(Book {
                 failure: OnceCell::new(),
                 measured: measured.into(),
             }),
         }
+    }
+
+    /// The same, which give up a chip that has not answered for this long; a minute
+    /// if nothing is said.
+    pub fn patient_for(mut self, limit: Duration) -> Self {
+        self.limit = limit;
+        self
     }
 
     /// What the chips took, when the run is over.
@@ -67,8 +95,29 @@ impl Host for Swarm {
         kind: PlannerKind,
         setup: Setup,
     ) -> Box<dyn Planner<TW, TH>> {
-        let chip = Chip::start(setup.id, self.machine, &self.image);
+        let chip = Chip::start(setup.id, self.machine, &self.image, self.limit);
         Box::new(Proxy::new(chip, self.book.clone(), kind, setup))
+    }
+
+    fn has_failed(&self) -> bool {
+        self.book.failure.get().is_some()
+    }
+}
+
+impl survey::Host for Swarm {
+    fn surveyor<const T: usize>(
+        &self,
+        extent: Extent,
+        limits: Limits,
+        planner: SurveyorConfig,
+        id: u8,
+    ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
+        let knowledge = Knowledge::new(extent, limits)?;
+        let chip = Chip::start(RobotId(id), self.machine, &self.image, self.limit);
+        let book = self.book.clone();
+        Ok(Box::new(SurveyProxy::new(
+            chip, book, knowledge, planner, id,
+        )))
     }
 
     fn has_failed(&self) -> bool {

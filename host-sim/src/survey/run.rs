@@ -2,10 +2,11 @@
 
 use std::time::Instant;
 
+use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::surface::{Patch, Surface, clearance};
-use planner_core::survey::{Action, Motion, SetupError, Status, Surveyor};
+use planner_core::survey::{Action, Limits, Motion, SetupError, Status, Surveyor};
 use planner_core::{Extent, Point};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -16,14 +17,62 @@ use super::sensor::look;
 use super::terrain::Terrain;
 use super::trace::{Record, Safety, Trace};
 
+/// Where the planners of a survey are.
+pub trait Host {
+    /// The planner of a robot.
+    fn surveyor<const T: usize>(
+        &self,
+        extent: Extent,
+        limits: Limits,
+        planner: SurveyorConfig,
+        id: u8,
+    ) -> Result<Box<dyn Surveyor<T, T>>, SetupError>;
+
+    /// Whether the run has to end because a planner is lost.
+    fn has_failed(&self) -> bool;
+}
+
+/// In this process.
+struct Here;
+
+impl Host for Here {
+    fn surveyor<const T: usize>(
+        &self,
+        extent: Extent,
+        _: Limits,
+        planner: SurveyorConfig,
+        id: u8,
+    ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
+        Ok(match planner {
+            SurveyorConfig::Fcao(config) => Box::new(Fcao::<T, T>::new(extent, config, id)?),
+            SurveyorConfig::Coordinated(config) => {
+                Box::new(CoordinatedSurvey::new(extent, config, id)?)
+            }
+        })
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
 /// Runs `scenario` over `terrain`.
 pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
+    run_on(&Here, terrain, scenario)
+}
+
+/// As [`run`], with the planners of planner-core elsewhere.
+pub fn run_on(
+    host: &impl Host,
+    terrain: &Terrain,
+    scenario: &Scenario,
+) -> Result<Trace, SetupError> {
     let Extent { width, height } = terrain.extent();
     match width.max(height).div_ceil(8) {
-        0..=4 => run_on::<4>(terrain, scenario),
-        5..=13 => run_on::<13>(terrain, scenario),
-        14..=25 => run_on::<25>(terrain, scenario),
-        _ => run_on::<64>(terrain, scenario),
+        0..=4 => compiled_on::<4>(host, terrain, scenario),
+        5..=13 => compiled_on::<13>(host, terrain, scenario),
+        14..=25 => compiled_on::<25>(host, terrain, scenario),
+        _ => compiled_on::<64>(host, terrain, scenario),
     }
 }
 
@@ -56,9 +105,13 @@ struct Robot<const T: usize> {
     stopped: bool,
 }
 
-fn run_on<const T: usize>(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
-    let mut sim = Simulation::<T>::new(terrain, scenario)?;
-    while sim.step() {}
+fn compiled_on<const T: usize>(
+    host: &impl Host,
+    terrain: &Terrain,
+    scenario: &Scenario,
+) -> Result<Trace, SetupError> {
+    let mut sim = Simulation::<T>::new(host, terrain, scenario)?;
+    while !host.has_failed() && sim.step() {}
     Ok(sim.trace)
 }
 
@@ -74,7 +127,11 @@ struct Simulation<'a, const T: usize> {
 }
 
 impl<'a, const T: usize> Simulation<'a, T> {
-    fn new(terrain: &'a Terrain, scenario: &'a Scenario) -> Result<Self, SetupError> {
+    fn new(
+        host: &impl Host,
+        terrain: &'a Terrain,
+        scenario: &'a Scenario,
+    ) -> Result<Self, SetupError> {
         let extent = terrain.extent();
         let starts = start_positions(terrain, scenario);
         let robots = starts
@@ -82,7 +139,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             .copied()
             .enumerate()
             .map(|(id, at)| {
-                let pilot = pilot(extent, scenario, id as u8)?;
+                let pilot = pilot(host, extent, scenario, id as u8)?;
                 Ok(Robot {
                     pilot,
                     at,
@@ -312,6 +369,7 @@ fn start_positions(terrain: &Terrain, scenario: &Scenario) -> Vec<Point> {
 }
 
 fn pilot<const T: usize>(
+    host: &impl Host,
     extent: Extent,
     scenario: &Scenario,
     id: u8,
@@ -333,13 +391,13 @@ fn pilot<const T: usize>(
                 choice,
                 seed: scenario.seed,
             };
-            Pilot::Other(Box::new(CoordinatedSurvey::<T, T>::new(
-                extent, config, id,
-            )?))
+            let planner = SurveyorConfig::Coordinated(config);
+            Pilot::Other(host.surveyor(extent, limits, planner, id)?)
         }
         Planner::Fcao => {
             let config = fcao::Config::new(limits, scenario.seed);
-            Pilot::Other(Box::new(Fcao::<T, T>::new(extent, config, id)?))
+            let planner = SurveyorConfig::Fcao(config);
+            Pilot::Other(host.surveyor(extent, limits, planner, id)?)
         }
     })
 }

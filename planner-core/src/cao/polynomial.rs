@@ -8,6 +8,7 @@ pub const TERMS: usize = 20;
 
 /// Highest degree of the polynomial.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Degree {
     /// 4 terms.
     Linear,

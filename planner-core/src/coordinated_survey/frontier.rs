@@ -29,6 +29,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     ///
     /// Cost: every tile with frontiers once, then the frontiers of the best four;
     /// each against all robots heard of.
+    #[inline(never)] // what it keeps on the stack goes with it
     pub(super) fn own_frontier(&mut self) -> Option<Cell> {
         let range = self.config.limits.range;
         let mut shortlist: [Option<(f32, Tile)>; SHORTLIST] = [None; SHORTLIST];

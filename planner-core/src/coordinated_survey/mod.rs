@@ -30,6 +30,7 @@ const CRUISE: f32 = 0.36;
 
 /// How a robot chooses among random local steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Choice {
     /// Each candidate is judged on the map: the faster survey in small fleets.
     #[default]
@@ -44,6 +45,7 @@ const NEAR_PATIENCE: u8 = 6;
 
 /// What a fleet agrees on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// The fleet's physics.
     pub limits: Limits,
@@ -71,12 +73,17 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
-    /// Robot `id` of a fleet over a surface of `extent` columns.
-    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
-        Ok(Self {
-            config,
-            knowledge: Knowledge::new(extent, config.limits)?,
-            rng: Rng::new(config.seed, id as u64),
+    /// A robot without a map; a `static` of it costs no flash. Call
+    /// [`reset`](Self::reset) before use.
+    pub const fn vacant() -> Self {
+        Self {
+            config: Config {
+                limits: Limits::NONE,
+                seed: 0,
+                choice: Choice::Map,
+            },
+            knowledge: Knowledge::vacant(),
+            rng: Rng::vacant(),
             history: History::new(),
             rescue: Rescue::new(),
             target: None,
@@ -84,7 +91,29 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             stuck: 0,
             local: false,
             work: 0,
-        })
+        }
+    }
+
+    /// Robot `id` of a fleet over a surface of `extent` columns.
+    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+        let mut robot = Self::vacant();
+        robot.reset(extent, config, id)?;
+        Ok(robot)
+    }
+
+    /// Starts anew, in place; unchanged after an error.
+    pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
+        self.knowledge.reset(extent, config.limits)?;
+        self.config = config;
+        self.rng = Rng::new(config.seed, u64::from(id));
+        self.history = History::new();
+        self.rescue.reset();
+        self.target = None;
+        self.stopped = false;
+        self.stuck = 0;
+        self.local = false;
+        self.work = 0;
+        Ok(())
     }
 
     /// Height over ground at which the robot flies.

@@ -49,6 +49,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     ///
     /// Cost: a [`Vicinity`], 64 rows for each rival, 8 probes of 4 discs; then 48
     /// candidates, each of them 4 discs or 20 terms of the cubic.
+    #[inline(never)] // what it keeps on the stack goes with it
     pub(super) fn best_swath(&mut self, gain: f32) -> Option<Point> {
         let step = self.config.limits.step;
         let trusted = gain >= LEAST_GAIN * 2.0 * self.config.limits.range * step;
@@ -90,6 +91,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     }
 
     /// The vicinity without what is nearer to others.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn own_vicinity(&mut self) -> Vicinity {
         let here = self.knowledge.position();
         let mut vicinity = Vicinity::new(self.knowledge.surface(), here);
@@ -103,6 +105,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     /// The cubic through the probes and the past: what J gained before, in the units
     /// of the probes [Renzaglia2019 eq. 3, 5].
+    #[inline(never)] // what it keeps on the stack goes with it
     fn fit(&mut self, mut rows: Vec<Sample, ROWS>) -> Option<Model> {
         let step = self.config.limits.step;
         let area = 2.0 * self.config.limits.range * step;
@@ -144,6 +147,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     /// What a flight along `heading` would show, 1 being a swath through unknown
     /// surface far from everything known.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn shown_along(&self, mut vicinity: Vicinity, heading: f32) -> f32 {
         let here = self.knowledge.position();
         let step = self.config.limits.step;

@@ -27,6 +27,7 @@ const FEWEST: usize = 4;
 
 /// What a fleet that runs FCAO agrees on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// The fleet's physics.
     pub limits: Limits,
@@ -66,18 +67,44 @@ pub struct Fcao<const TW: usize, const TH: usize, const H: usize = 8> {
 }
 
 impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
-    /// Robot `id` of a fleet over a surface of `extent` columns.
-    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
-        Ok(Self {
-            config,
-            knowledge: Knowledge::new(extent, config.limits)?,
-            rng: Rng::new(config.seed, id as u64),
+    /// A robot without a map; a `static` of it costs no flash. Call
+    /// [`reset`](Self::reset) before use.
+    pub const fn vacant() -> Self {
+        Self {
+            config: Config {
+                limits: Limits::NONE,
+                degree: Degree::Linear,
+                candidates: 0,
+                seed: 0,
+            },
+            knowledge: Knowledge::vacant(),
+            rng: Rng::vacant(),
             history: History::new(),
             rescue: Rescue::new(),
             target: None,
             stopped: false,
             work: 0,
-        })
+        }
+    }
+
+    /// Robot `id` of a fleet over a surface of `extent` columns.
+    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+        let mut robot = Self::vacant();
+        robot.reset(extent, config, id)?;
+        Ok(robot)
+    }
+
+    /// Starts anew, in place; unchanged after an error.
+    pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
+        self.knowledge.reset(extent, config.limits)?;
+        self.config = config;
+        self.rng = Rng::new(config.seed, u64::from(id));
+        self.history = History::new();
+        self.rescue.reset();
+        self.target = None;
+        self.stopped = false;
+        self.work = 0;
+        Ok(())
     }
 
     /// Gain of a step that is too little to go on locally.
@@ -116,6 +143,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     // [Renzaglia2019 eq. 5]; reading: centred on the robot, scaled to the history's
     // reach, J less its mean.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn fit(&mut self, here: Point) -> Option<Model> {
         self.work = self.work.saturating_add((H * H) as u32);
         let reach = self.history.reach(here).max(self.config.limits.step);

@@ -22,6 +22,7 @@ pub(crate) use tile::neighbours_of;
 /// would be too coarse: each stair of a gentle slope would hide the ground below it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Height(pub u8);
 
 impl Height {
@@ -42,6 +43,7 @@ impl Height {
 /// One column as a sensor gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Column {
     /// Where.
     pub cell: Cell,
@@ -65,6 +67,7 @@ pub struct Patch {
 
 /// The map does not fit into the number of tiles that its type has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TooLarge {
     /// What was asked for.
     pub extent: Extent,
@@ -98,21 +101,47 @@ pub struct Surface<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Surface<TW, TH> {
-    /// A map of `extent` with nothing known.
-    pub const fn new(extent: Extent) -> Result<Self, TooLarge> {
+    /// A map of nothing; a `static` of it costs no flash.
+    pub const fn vacant() -> Self {
         const { assert!(TW <= 255 && TH <= 255, "a tile's coordinates are bytes") }
-        let room = Extent::new(TW as u16 * 8, TH as u16 * 8);
-        if extent.width > room.width || extent.height > room.height {
-            return Err(TooLarge { extent, room });
-        }
-        Ok(Self {
-            extent,
+        Self {
+            extent: Extent::new(0, 0),
             known: [[0; TW]; TH],
             heights: [[[Height(0); 64]; TW]; TH],
             tile_frontiers: [[0; TW]; TH],
             frontiers: 0,
             known_columns: 0,
-        })
+        }
+    }
+
+    /// A map of `extent` with nothing known.
+    pub const fn new(extent: Extent) -> Result<Self, TooLarge> {
+        let mut surface = Self::vacant();
+        match surface.fit(extent) {
+            Ok(()) => Ok(surface),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Forgets all, in place, and is a map of `extent` from now on; unchanged if
+    /// that is too large.
+    pub fn reset(&mut self, extent: Extent) -> Result<(), TooLarge> {
+        self.fit(extent)?;
+        self.known = [[0; TW]; TH];
+        self.heights = [[[Height(0); 64]; TW]; TH];
+        self.tile_frontiers = [[0; TW]; TH];
+        self.frontiers = 0;
+        self.known_columns = 0;
+        Ok(())
+    }
+
+    const fn fit(&mut self, extent: Extent) -> Result<(), TooLarge> {
+        let room = Extent::new(TW as u16 * 8, TH as u16 * 8);
+        if extent.width > room.width || extent.height > room.height {
+            return Err(TooLarge { extent, room });
+        }
+        self.extent = extent;
+        Ok(())
     }
 
     /// The map's size in columns.

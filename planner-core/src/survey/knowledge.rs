@@ -11,6 +11,7 @@ use crate::surface::{Column, Patch, Surface, Tile, TooLarge};
 
 /// A planner cannot be set up like this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetupError {
     /// The map is larger than the planner's type allows.
     TooLarge(TooLarge),
@@ -61,8 +62,31 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
+    /// A robot without a map; a `static` of it costs no flash.
+    pub const fn vacant() -> Self {
+        Self {
+            limits: Limits::NONE,
+            surface: Surface::vacant(),
+            position: Point::new(0.0, 0.0, 0.0),
+            news: News::new(),
+            peers: Peers::new(),
+            turn: Tile { x: 0, y: 0 },
+            gain: 0.0,
+            reward: 0.0,
+            idle: 0,
+            blocked: false,
+        }
+    }
+
     /// A robot that knows nothing of a surface of `extent` columns.
     pub fn new(extent: Extent, limits: Limits) -> Result<Self, SetupError> {
+        let mut knowledge = Self::vacant();
+        knowledge.reset(extent, limits)?;
+        Ok(knowledge)
+    }
+
+    /// Starts anew, in place; unchanged after an error.
+    pub fn reset(&mut self, extent: Extent, limits: Limits) -> Result<(), SetupError> {
         if !(limits.range > 0.0 && limits.range <= MAX_RANGE) {
             return Err(SetupError::Range);
         }
@@ -74,18 +98,17 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         {
             return Err(SetupError::Limits);
         }
-        Ok(Self {
-            limits,
-            surface: Surface::new(extent)?,
-            position: Point::new(0.0, 0.0, 0.0),
-            news: News::new(),
-            peers: Peers::new(),
-            turn: Tile { x: 0, y: 0 },
-            gain: 0.0,
-            reward: 0.0,
-            idle: 0,
-            blocked: false,
-        })
+        self.surface.reset(extent)?;
+        self.limits = limits;
+        self.position = Point::new(0.0, 0.0, 0.0);
+        self.news = News::new();
+        self.peers = Peers::new();
+        self.turn = Tile { x: 0, y: 0 };
+        self.gain = 0.0;
+        self.reward = 0.0;
+        self.idle = 0;
+        self.blocked = false;
+        Ok(())
     }
 
     /// The fleet's physics.

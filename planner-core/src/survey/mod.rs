@@ -28,6 +28,7 @@ use crate::surface::{Column, Patch};
 /// The physics of a fleet: what its sensors reach and which poses are allowed, the
 /// constraints C(P) ≤ 0 [Renzaglia2019 §3]. All lengths in cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Limits {
     /// Sensor range R, above 0 and at most [`MAX_RANGE`].
     pub range: f32,
@@ -41,8 +42,20 @@ pub struct Limits {
     pub separation: f32,
 }
 
+impl Limits {
+    /// All zero: nothing can be flown with them.
+    pub(crate) const NONE: Self = Self {
+        range: 0.0,
+        step: 0.0,
+        min_altitude: 0.0,
+        ceiling: 0.0,
+        separation: 0.0,
+    };
+}
+
 /// What the robot shall do now.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Action {
     /// Fly straight to this point, at most one step away.
     Fly(Point),
@@ -54,6 +67,7 @@ pub enum Action {
 
 /// Why a robot stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Stop {
     /// Every column of the map is known.
     Complete,
@@ -81,6 +95,7 @@ impl fmt::Display for Stop {
 
 /// How the last [`Action::Fly`] went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Motion {
     /// The robot is where it was sent.
     Moved,
@@ -90,6 +105,7 @@ pub enum Motion {
 
 /// What a robot says about itself: hints, never needed for completeness.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Status {
     /// Where it is.
     pub position: Point,

@@ -21,38 +21,50 @@ pub struct Peer {
 
 /// At most [`MAX_PEERS`] robots, each once.
 #[derive(Clone, Debug)]
-pub(crate) struct Peers([Option<Peer>; MAX_PEERS]);
+pub(crate) struct Peers([Place; MAX_PEERS]);
+
+/// Room for one. As an `Option`, but empty is all zero: then a `static` planner
+/// takes no flash.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Empty = 0,
+    Taken(Peer) = 1,
+}
 
 impl Peers {
     pub(super) const fn new() -> Self {
-        Self([None; MAX_PEERS])
+        Self([Place::Empty; MAX_PEERS])
     }
 
     pub(super) fn iter(&self) -> impl Iterator<Item = &Peer> {
-        self.0.iter().flatten()
+        self.0.iter().filter_map(|place| match place {
+            Place::Empty => None,
+            Place::Taken(peer) => Some(peer),
+        })
     }
 
     /// Replaces what `id` said before, or else takes an empty or the oldest place.
     pub(super) fn hear(&mut self, id: u8, status: Status) {
-        let staleness = |place: &Option<Peer>| match place {
-            Some(peer) if peer.id == id => u16::MAX,
-            Some(peer) => u16::from(peer.age),
-            None => u16::MAX - 1,
+        let staleness = |place: &Place| match place {
+            Place::Taken(peer) if peer.id == id => u16::MAX,
+            Place::Taken(peer) => u16::from(peer.age),
+            Place::Empty => u16::MAX - 1,
         };
         if let Some(place) = self.0.iter_mut().max_by_key(|place| staleness(place)) {
-            *place = Some(Peer { id, status, age: 0 });
+            *place = Place::Taken(Peer { id, status, age: 0 });
         }
     }
 
     /// One step passes.
     pub(super) fn age(&mut self) {
         for place in &mut self.0 {
-            *place = place
-                .map(|peer| Peer {
-                    age: peer.age + 1,
-                    ..peer
-                })
-                .filter(|peer| peer.age <= PEER_MEMORY);
+            if let Place::Taken(peer) = place {
+                peer.age += 1;
+                if peer.age > PEER_MEMORY {
+                    *place = Place::Empty;
+                }
+            }
         }
     }
 }

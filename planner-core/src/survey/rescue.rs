@@ -46,6 +46,17 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         }
     }
 
+    /// Starts anew, in place.
+    pub(crate) fn reset(&mut self) {
+        self.tried = [[0; TW]; TH];
+        self.known_columns = 0;
+        self.target = None;
+        self.edge = 0;
+        self.climbing = false;
+        self.patience = 0;
+        self.work = 0;
+    }
+
     /// The frontier that it flies to.
     pub(crate) const fn target(&self) -> Option<Cell> {
         self.target
@@ -106,6 +117,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     ///
     /// Cost: the columns on the straight way, or all tiles once for each column of the
     /// shortest way.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn next_place(&mut self, knowledge: &Knowledge<TW, TH>, target: Cell, place: Point) -> Point {
         let surface = knowledge.surface();
         let here = knowledge.position();

@@ -6,9 +6,9 @@
 
 use core::fmt;
 
-use bridge::{Inbox, MAX_MESSAGE, ReadError, Request};
+use bridge::{Inbox, MAX_MESSAGE, ReadError};
 use cortex_m_semihosting::syscall;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Why the dialogue ended.
 pub(crate) enum Trouble {
@@ -66,7 +66,7 @@ impl Host {
     }
 
     /// Waits for a request.
-    pub(crate) fn ask<'a>(&self, inbox: &'a mut Inbox) -> Result<Request<'a>, Trouble> {
+    pub(crate) fn ask<'a, T: Deserialize<'a>>(&self, inbox: &'a mut Inbox) -> Result<T, Trouble> {
         inbox
             .read(|place| read(self.requests, place))
             .map_err(Trouble::Read)?;

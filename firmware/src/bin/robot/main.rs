@@ -7,6 +7,9 @@
 mod host;
 #[cfg(target_os = "none")]
 mod robot;
+// Only where there is a unit for its floats, and room for its planners.
+#[cfg(all(target_os = "none", board = "stm32f405"))]
+mod survey;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {

@@ -43,14 +43,25 @@ pub(crate) fn serve() -> Result<(), Trouble> {
     let timer = cortex_m::Peripherals::take().map(|chip| chip.SYST);
     let stopwatch = Stopwatch::start(timer.expect("nobody else takes the timer"));
 
-    let Request::Start {
-        planner,
-        id,
-        extent,
-        start,
-    } = host.ask(inbox)?
-    else {
-        return Err(Trouble::NotStarted);
+    let (planner, id, extent, start) = match host.ask(inbox)? {
+        Request::Start {
+            planner,
+            id,
+            extent,
+            start,
+        } => (planner, id, extent, start),
+        #[cfg(board = "stm32f405")]
+        Request::Survey {
+            planner,
+            id,
+            extent,
+        } => {
+            let setup = (planner, id, extent);
+            return crate::survey::serve(&host, inbox, outbox, &stopwatch, setup);
+        }
+        #[cfg(not(board = "stm32f405"))]
+        Request::Survey { .. } => return host.answer(&Welcome::NotHosted, outbox),
+        _ => return Err(Trouble::NotStarted),
     };
     let stage = STAGE.take();
     let prepared = prepare(planner, id, extent, start).and_then(|(planner, size)| {
@@ -165,7 +176,7 @@ fn obey<'a>(
             (Reply::Done, cost)
         }
         Request::Memory => (Reply::Memory(memory(size)), Cost::default()),
-        Request::Start { .. } | Request::End => return None,
+        Request::Start { .. } | Request::Survey { .. } | Request::End => return None,
     })
 }
 
@@ -185,7 +196,8 @@ fn state(planner: &Robot) -> State {
     }
 }
 
-fn memory(planner: usize) -> Memory {
+/// What the image and a planner of that size take.
+pub(crate) fn memory(planner: usize) -> Memory {
     let bytes = |size: usize| size as u32;
     Memory {
         planner: bytes(planner),

@@ -1,0 +1,182 @@
+//! What the two sides say of a robot that flies.
+//!
+//! It begins with [`Request::Survey`](crate::Request::Survey); after that the
+//! simulator sends [`SurveyRequest`]s, and the image a [`SurveyAnswer`] to each.
+
+use heapless::Vec;
+use planner_core::surface::{Bits, Column, Height, Patch, Surface, Tile};
+use planner_core::survey::{Action, Knowledge, Motion, Status};
+use planner_core::{Point, coordinated_survey, fcao};
+use serde::{Deserialize, Serialize};
+
+use crate::{Cost, Memory};
+
+/// Columns of one [`SurveyRequest::Look`] at most.
+pub const LOOK: usize = 64;
+
+/// Columns that a robot sees in one step at most: those within the longest range.
+pub const SEEN: usize = 512;
+
+/// Everything that a robot sees in one step.
+pub type Seen = Vec<Column, SEEN>;
+
+/// Which planner decides, and how.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SurveyorConfig {
+    /// FCAO as published.
+    Fcao(fcao::Config),
+    /// Its coordinated successor.
+    Coordinated(coordinated_survey::Config),
+}
+
+/// A verb of [`Surveyor`](planner_core::survey::Surveyor), or something about it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one at a time, and no heap on the chip"
+)]
+pub enum SurveyRequest<'a> {
+    /// Puts columns aside for [`Observe`](Self::Observe); [`SurveyReply::Done`].
+    Look(Vec<Column, LOOK>),
+    /// From here the robot sees the columns put aside; [`SurveyReply::Told`].
+    Observe(Point),
+    /// What another robot told about itself; [`SurveyReply::Done`].
+    Hear(u8, Status),
+    /// A piece of another robot's map; [`SurveyReply::Done`].
+    #[serde(borrow)]
+    Merge(PatchRecord<'a>),
+    /// [`SurveyReply::Decided`].
+    Tick,
+    /// [`SurveyReply::Done`].
+    Report(Motion),
+    /// [`SurveyReply::Memory`].
+    Memory,
+    /// The image ends, without an answer.
+    End,
+}
+
+/// What the image answers to any other request.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SurveyAnswer {
+    /// What the planner's call took.
+    pub cost: Cost,
+    /// What the robot would tell the others about itself.
+    pub status: Status,
+    /// What the call returned.
+    pub reply: SurveyReply,
+}
+
+/// What a call returned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SurveyReply {
+    /// Nothing to say.
+    Done,
+    /// [`told`] of what the robot would tell the others now.
+    Told(u32),
+    /// What was decided, and by what.
+    Decided {
+        /// What to do.
+        action: Action,
+        /// Work of the decision.
+        work: u32,
+        /// What the step added to the reward.
+        gain: f32,
+        /// The reward so far.
+        reward: f32,
+        /// [`relief`] of the map.
+        map: u32,
+    },
+    /// What the image takes.
+    Memory(Memory),
+}
+
+/// A [`Patch`] without the heights that mean nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PatchRecord<'a> {
+    /// Column of tiles.
+    x: u8,
+    /// Row of tiles.
+    y: u8,
+    cells: u64,
+    /// Of the cells, in the order of their bits.
+    heights: &'a [u8],
+    fresh: bool,
+}
+
+impl<'a> PatchRecord<'a> {
+    /// The record of a patch; its heights go to `heights`.
+    pub fn of(patch: &Patch, heights: &'a mut [u8; 64]) -> Self {
+        let mut count = 0;
+        for (place, height) in heights.iter_mut().zip(heights_of(patch)) {
+            *place = height;
+            count += 1;
+        }
+        Self {
+            x: patch.tile.x,
+            y: patch.tile.y,
+            cells: patch.cells,
+            heights: heights.get(..count).unwrap_or_default(),
+            fresh: patch.fresh,
+        }
+    }
+
+    /// The patch.
+    pub fn patch(&self) -> Patch {
+        let mut heights = [Height(0); 64];
+        for (bit, &height) in Bits(self.cells).zip(self.heights) {
+            if let Some(place) = heights.get_mut(bit as usize) {
+                *place = Height(height);
+            }
+        }
+        Patch {
+            tile: Tile {
+                x: self.x,
+                y: self.y,
+            },
+            cells: self.cells,
+            heights,
+            fresh: self.fresh,
+        }
+    }
+}
+
+fn heights_of(patch: &Patch) -> impl Iterator<Item = u8> {
+    Bits(patch.cells).map(|bit| patch.heights.get(bit as usize).map_or(0, |height| height.0))
+}
+
+/// A number that tells maps apart. Two maps of different compiled sizes with the same
+/// columns have the same one.
+pub fn relief<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>) -> u32 {
+    let known = surface
+        .tiles()
+        .filter(|&tile| surface.known(tile) != 0)
+        .map(|tile| surface.patch(tile, !0));
+    hash(known)
+}
+
+/// A number that tells apart what robots would tell.
+pub fn told<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> u32 {
+    hash(knowledge.patches())
+}
+
+/// FNV-1a over what the patches say, folded.
+fn hash(patches: impl Iterator<Item = Patch>) -> u32 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut eat = |word: u64| hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+    for patch in patches {
+        let Tile { x, y } = patch.tile;
+        eat(u64::from_le_bytes([
+            x,
+            y,
+            patch.fresh.into(),
+            0,
+            0,
+            0,
+            0,
+            0,
+        ]));
+        eat(patch.cells);
+        heights_of(&patch).for_each(|height| eat(height.into()));
+    }
+    (hash ^ hash >> 32) as u32
+}

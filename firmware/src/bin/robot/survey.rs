@@ -1,0 +1,124 @@
+//! The planner of a robot that flies, and what the simulator asks of it.
+
+use bridge::{
+    Cost, Hello, Inbox, MAX_MESSAGE, Seen, SurveyAnswer, SurveyReply, SurveyRequest,
+    SurveyorConfig, VERSION, Welcome, relief, told,
+};
+use firmware::{CLOCK_HZ, Stopwatch};
+use planner_core::Extent;
+use planner_core::coordinated_survey::CoordinatedSurvey;
+use planner_core::fcao::Fcao;
+use planner_core::survey::{SetupError, Surveyor};
+use static_cell::ConstStaticCell;
+
+use crate::host::{Host, Trouble};
+use crate::robot::memory;
+
+/// Tiles along a side of the map: 104×104 columns.
+const TILES: usize = 13;
+
+// Every planner that the image can host has its place; one of them is used.
+static FCAO: ConstStaticCell<Fcao<TILES, TILES>> = ConstStaticCell::new(Fcao::vacant());
+static COORDINATED: ConstStaticCell<CoordinatedSurvey<TILES, TILES>> =
+    ConstStaticCell::new(CoordinatedSurvey::vacant());
+
+/// Columns on their way into the planner.
+static SEEN: ConstStaticCell<Seen> = ConstStaticCell::new(Seen::new());
+
+type Robot = dyn Surveyor<TILES, TILES>;
+
+/// Answers requests until the simulator has none left.
+pub(crate) fn serve(
+    host: &Host,
+    inbox: &mut Inbox,
+    outbox: &mut [u8; MAX_MESSAGE],
+    stopwatch: &Stopwatch,
+    (planner, id, extent): (SurveyorConfig, u8, Extent),
+) -> Result<(), Trouble> {
+    let (planner, size) = match prepare(planner, id, extent) {
+        Ok(prepared) => prepared,
+        Err(error) => return host.answer(&Welcome::Grounded(error), outbox),
+    };
+    let hello = Hello {
+        version: VERSION,
+        clock_hz: CLOCK_HZ,
+    };
+    host.answer(&Welcome::Ready(hello), outbox)?;
+    let seen = SEEN.take();
+    loop {
+        let request = host.ask(inbox)?;
+        let Some((reply, cost)) = obey(planner, size, seen, stopwatch, request) else {
+            return Ok(());
+        };
+        let answer = SurveyAnswer {
+            cost,
+            status: planner.status(),
+            reply,
+        };
+        host.answer(&answer, outbox)?;
+    }
+}
+
+/// Sets up the planner, in place. Returns its size too.
+fn prepare(
+    planner: SurveyorConfig,
+    id: u8,
+    extent: Extent,
+) -> Result<(&'static mut Robot, usize), SetupError> {
+    Ok(match planner {
+        SurveyorConfig::Fcao(config) => {
+            let planner = FCAO.take();
+            planner.reset(extent, config, id)?;
+            (planner, size_of::<Fcao<TILES, TILES>>())
+        }
+        SurveyorConfig::Coordinated(config) => {
+            let planner = COORDINATED.take();
+            planner.reset(extent, config, id)?;
+            (planner, size_of::<CoordinatedSurvey<TILES, TILES>>())
+        }
+    })
+}
+
+/// Does what is asked for, and says what the planner's call took.
+/// `None`: the simulator has finished.
+fn obey(
+    planner: &mut Robot,
+    size: usize,
+    seen: &mut Seen,
+    stopwatch: &Stopwatch,
+    request: SurveyRequest<'_>,
+) -> Option<(SurveyReply, Cost)> {
+    let done = |((), cost)| (SurveyReply::Done, cost);
+    Some(match request {
+        SurveyRequest::Look(columns) => {
+            // More than there is room for show in the map that the simulator compares.
+            let _ = seen.extend_from_slice(&columns);
+            (SurveyReply::Done, Cost::default())
+        }
+        SurveyRequest::Observe(at) => {
+            let ((), cost) = stopwatch.measure(|| planner.observe(at, seen));
+            seen.clear();
+            (SurveyReply::Told(told(planner.knowledge())), cost)
+        }
+        SurveyRequest::Hear(id, status) => done(stopwatch.measure(|| planner.hear(id, status))),
+        SurveyRequest::Merge(record) => {
+            let patch = record.patch();
+            done(stopwatch.measure(|| planner.merge(&patch)))
+        }
+        SurveyRequest::Tick => {
+            let (action, cost) = stopwatch.measure(|| planner.tick());
+            let knowledge = planner.knowledge();
+            let decided = SurveyReply::Decided {
+                action,
+                work: planner.work(),
+                gain: knowledge.gain(),
+                reward: knowledge.reward(),
+                map: relief(knowledge.surface()),
+            };
+            (decided, cost)
+        }
+        SurveyRequest::Report(motion) => done(stopwatch.measure(|| planner.report(motion))),
+        SurveyRequest::Memory => (SurveyReply::Memory(memory(size)), Cost::default()),
+        SurveyRequest::End => return None,
+    })
+}

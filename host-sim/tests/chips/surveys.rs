@@ -1,0 +1,80 @@
+//! Robots that fly, over 3-D terrain.
+
+use host_sim::chip::{ChipError, Machine, Swarm};
+use host_sim::measured::{Call, Measured};
+use host_sim::survey::{self, Kill, Planner, Scenario, Terrain, Trace};
+
+use crate::{Largest, image};
+
+fn on_chips(
+    terrain: &Terrain,
+    scenario: &Scenario,
+    machine: Machine,
+) -> Result<(Trace, Measured), ChipError> {
+    let swarm = Swarm::new(machine, image(machine, "robot"));
+    let trace = survey::run_on(&swarm, terrain, scenario).unwrap();
+    Ok((trace, swarm.finish()?))
+}
+
+#[test]
+#[ignore = "needs QEMU and the image: cargo xtask test --only loop"]
+fn flying_robots_decide_on_the_chip_as_on_the_host() {
+    // The terrain, robots, share of messages lost and of steps slept through.
+    let surveys = [
+        (Terrain::gaussian(1, 40), 1, 0.0, 0.0),
+        (Terrain::urban(2, 48), 3, 0.3, 0.0),
+        (Terrain::gaussian(3, 60), 4, 0.6, 0.2),
+        (Terrain::gaussian(4, 100), 4, 0.3, 0.0),
+    ];
+    let planners = [
+        (Planner::Fcao, "fcao"),
+        (Planner::CoordinatedSurvey, "coordinated_survey"),
+        (Planner::CoordinatedCubic, "coordinated_survey"),
+    ];
+    let mut largest = Largest::default();
+    let mut explorations = 0;
+    for (seed, (terrain, robots, loss, skip)) in (0..).zip(surveys) {
+        for (planner, name) in planners {
+            let mut scenario = Scenario::new(planner, robots, seed);
+            (scenario.loss, scenario.skip) = (loss, skip);
+            if robots > 2 {
+                scenario.kills = vec![Kill { robot: 1, step: 20 }];
+            }
+            let (there, measured) = on_chips(&terrain, &scenario, Machine::Netduinoplus2)
+                .unwrap_or_else(|error| panic!("{error}"));
+            let here = survey::run(&terrain, &scenario).unwrap();
+            let title = format!("{planner:?} with {robots} robots over {}", terrain.extent());
+            for (here, there) in here.records.iter().zip(&there.records) {
+                assert_eq!(here, there, "{title}");
+            }
+            assert_eq!(here.records.len(), there.records.len(), "{title}");
+            assert_eq!(here.digest(), there.digest(), "{title}");
+            assert!(here.complete(), "{title}");
+            let tick = measured.calls[&Call::Tick];
+            println!(
+                "{title:<55} {:>5} steps {:016x}  mean {:>7} largest {:>7}",
+                here.seen.len() - 1,
+                here.digest(),
+                tick.mean,
+                tick.largest
+            );
+            let calls = [Call::Observe, Call::Tick, Call::Hear, Call::Join];
+            largest.take(name, &calls, &measured);
+            explorations += 1;
+        }
+    }
+    largest.print();
+    println!("explorations: {explorations}");
+}
+
+#[test]
+#[ignore = "needs QEMU and the image: cargo xtask test --only loop"]
+fn a_chip_that_cannot_fly_ends_the_survey_with_a_reason() {
+    let scenario = Scenario::new(Planner::Fcao, 1, 0);
+    let terrain = Terrain::gaussian(0, 40);
+    let error = on_chips(&terrain, &scenario, Machine::Mps2An385).unwrap_err();
+    assert!(error.to_string().contains("hosts no planner"), "{error}");
+    let terrain = Terrain::gaussian(0, 105);
+    let error = on_chips(&terrain, &scenario, Machine::Netduinoplus2).unwrap_err();
+    assert!(error.to_string().contains("does not fit"), "{error}");
+}

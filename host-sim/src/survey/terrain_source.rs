@@ -52,7 +52,9 @@ impl TerrainSource {
                 } else {
                     from_image(path)
                 };
-                read.map_err(|reason| format!("{}: {reason}", path.display()))
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                read.map(|terrain| terrain.named(name))
+                    .map_err(|reason| format!("{}: {reason}", path.display()))
             }
         }
     }

@@ -71,13 +71,15 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 });
             }
         }
-        self.look_at(u32::from(HEADINGS) * self.disc_rows());
+        let rows = u32::from(HEADINGS) * self.disc_rows();
+        self.knowledge.look_at(rows);
         if !probes.iter().any(|probe| probe.value >= LEAST) {
             return None;
         }
         let to = match self.config.choice {
             Choice::Map => self.best_candidate(|robot, heading, _| {
-                robot.look_at(robot.disc_rows());
+                let rows = robot.disc_rows();
+                robot.knowledge.look_at(rows);
                 robot.shown_along(vicinity, heading)
             }),
             Choice::Cubic => {
@@ -97,7 +99,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             vicinity.leave_to(peer.status.position, here);
         }
         let rivals = self.knowledge.rivals().count() as u32;
-        self.look_at(512 + 64 * rivals);
+        self.knowledge.look_at(512 + 64 * rivals);
         vicinity
     }
 
@@ -113,7 +115,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         {
             let _ = rows.push(sample);
         }
-        self.look_at((ROWS * ROWS) as u32);
+        self.knowledge.look_at((ROWS * ROWS) as u32);
         let frame = Frame {
             origin: self.knowledge.position(),
             scale: 1.0 / (step * math::sqrt(6.0)),
@@ -138,7 +140,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 best = Some((value, to));
             }
         }
-        self.look_at(u32::from(CANDIDATES));
+        self.knowledge.look_at(u32::from(CANDIDATES));
         best.map(|(_, to)| to)
     }
 

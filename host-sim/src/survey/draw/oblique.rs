@@ -4,7 +4,7 @@ use image::{Rgb, RgbImage};
 use planner_core::{Cell, Point};
 
 use super::{ROBOT_COLOURS, shade};
-use crate::survey::{Terrain, Trace};
+use crate::survey::Trace;
 
 /// Pixels of a cell along the picture's x axis, and up.
 const SCALE: f32 = 4.0;
@@ -19,7 +19,8 @@ fn project(at: Point, origin: (f32, f32)) -> (f32, f32) {
 
 /// What had been mapped after `step` steps, with the ways flown; what is unknown is
 /// left dark.
-pub fn oblique_view(terrain: &Terrain, trace: &Trace, step: u32) -> RgbImage {
+pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
+    let terrain = &trace.terrain;
     let extent = terrain.extent();
     let (width, height) = (f32::from(extent.width), f32::from(extent.height));
     let margin = 20.0;

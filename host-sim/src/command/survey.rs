@@ -5,7 +5,10 @@ use std::process::ExitCode;
 
 use clap::Args;
 use host_sim::medium::MediumKind;
-use host_sim::survey::draw::{animation, coverage_plot, oblique_view, top_view, write_png};
+use host_sim::survey::draw::{
+    animate, animation, coverage_plot, oblique_view, top_view, write_png,
+};
+use host_sim::survey::voxels::{self, Scene};
 use host_sim::survey::{
     DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, run,
 };
@@ -18,7 +21,9 @@ use super::folder::Folder;
 #[derive(Args)]
 pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
-    /// OctoMap .bt file.
+    /// OctoMap .bt file. town:SEED is a town of voxels, up to 64×64×18, with rooms and
+    /// bridges: there another planner flies, and of the options below only size, robots,
+    /// range, loss, seed, max-ticks, out and json apply.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
     /// Columns along a side of a drawn terrain.
@@ -74,6 +79,9 @@ pub(crate) struct Survey {
 
 impl Survey {
     pub(crate) fn run(self) -> Done {
+        if let Some(scene) = self.terrain.scene(self.size) {
+            return self.run_in(&scene);
+        }
         let terrain = self.terrain.load(self.size)?;
         let trace = run(&terrain, &self.scenario())?;
         let summary = Summary::new(&trace);
@@ -109,6 +117,79 @@ impl Survey {
         })
     }
 
+    /// The same in a scene of voxels.
+    fn run_in(self, scene: &Scene) -> Done {
+        let scenario = voxels::Scenario {
+            robots: self.robots.into(),
+            range: self.range as u8,
+            loss: self.loss,
+            seed: self.seed,
+            max_ticks: self.max_ticks,
+        };
+        let trace = voxels::run(scene, &scenario)?;
+        let work = trace.work.iter().copied();
+        let json = serde_json::json!({
+            "complete": trace.complete(),
+            "ticks_to_seen": trace.ticks_to(1.0),
+            "ticks_to_95": trace.ticks_to(0.95),
+            "ticks_to_99": trace.ticks_to(0.99),
+            "ticks_to_stopped": trace.all_stopped.then_some(trace.seen.len() - 1),
+            "ticks": trace.seen.len() - 1,
+            "reachable_cells": trace.visible,
+            "seen_cells": trace.seen.last(),
+            "max_work_per_tick": work.clone().max(),
+            "mean_work_per_tick": work.clone().map(f64::from).sum::<f64>() / work.len() as f64,
+            "violations": trace.violations,
+            "trace_digest": trace.digest(),
+            "map": scene.name(),
+            "planner": "voxel-survey",
+            "range": scenario.range,
+            "loss": scenario.loss,
+            "seed": scenario.seed,
+            "robots": scenario.robots,
+        });
+        let json = serde_json::to_string_pretty(&json)?;
+        let out = self
+            .out
+            .unwrap_or_else(|| PathBuf::from("out").join(scene.name()));
+        let mut folder = Folder::open(out)?;
+        let all = u32::MAX;
+        folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
+        folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
+        folder.write("oblique.png", |file| {
+            write_png(&trace.oblique_view(all - 1), file)
+        })?;
+        folder.write("explored.gif", |file| {
+            let ticks = trace.seen.len() as u32;
+            animate(ticks, |tick| trace.oblique_view(tick), file)
+        })?;
+        folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
+        let path = folder.path().to_path_buf();
+        folder.close()?;
+        if self.json {
+            println!("{json}");
+        } else {
+            let seen = trace.seen.last().copied().unwrap_or(0);
+            println!(
+                "{}: {seen} of {} visible voxels seen",
+                scene.name(),
+                trace.visible
+            );
+            println!(
+                "  everything seen    after {} ticks",
+                words(trace.ticks_to(1.0))
+            );
+            println!("  violations         {}", trace.violations);
+            println!("  trace digest       {}", trace.digest());
+            println!("  results            {}", path.display());
+        }
+        Ok(if trace.complete() {
+            ExitCode::SUCCESS
+        } else {
+            ExitCode::FAILURE
+        })
+    }
+
     fn scenario(&self) -> Scenario {
         let scenario = Scenario::new(self.planner, self.robots.into(), self.seed);
         Scenario {
@@ -128,6 +209,10 @@ impl Survey {
             ..scenario
         }
     }
+}
+
+fn words(ticks: Option<u32>) -> String {
+    ticks.map_or("ever so many".into(), |ticks| ticks.to_string())
 }
 
 fn print(summary: &Summary, out: &std::path::Path) {

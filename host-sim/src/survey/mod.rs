@@ -12,6 +12,7 @@ mod summary;
 mod terrain;
 mod terrain_source;
 mod trace;
+pub mod voxels;
 
 pub use mapped::octree;
 pub use run::run;

@@ -41,6 +41,9 @@ const RIDGE: f32 = 1e-3;
 /// Random candidates.
 const CANDIDATES: u8 = 48;
 
+/// Rivals whose part of the surface is left to them.
+const NEIGHBOURS: usize = 6;
+
 /// Rows of the fit: the past and the probes.
 const ROWS: usize = HISTORY + HEADINGS as usize;
 
@@ -91,15 +94,26 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         to
     }
 
-    /// The vicinity without what is nearer to others.
+    /// The vicinity without what is nearer to others; of many, to the nearest six: the
+    /// rest are behind them, and the work stays level in a large fleet.
     fn own_vicinity(&mut self) -> Vicinity {
         let here = self.knowledge.position();
         let mut vicinity = Vicinity::new(self.knowledge.surface(), here);
+        let mut nearest: Vec<(f32, Point), NEIGHBOURS> = Vec::new();
         for peer in self.knowledge.rivals() {
-            vicinity.leave_to(peer.status.position, here);
+            let at = peer.status.position;
+            let distance = here.plan_distance(at);
+            let place = nearest.iter().take_while(|near| near.0 <= distance).count();
+            if nearest.is_full() && place < NEIGHBOURS {
+                nearest.pop();
+            }
+            // Beyond the last place there is no room.
+            let _ = nearest.insert(place, (distance, at));
         }
-        let rivals = self.knowledge.rivals().count() as u32;
-        self.knowledge.look_at(512 + 64 * rivals);
+        for &(_, at) in &nearest {
+            vicinity.leave_to(at, here);
+        }
+        self.knowledge.look_at(512 + 64 * nearest.len() as u32);
         vicinity
     }
 

@@ -71,7 +71,8 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     way: Vec<Voxel, WAY>,
     goal: Voxel,
     far: Far<TW, TH, L>,
-    rivals: Vec<(u8, Voxel), RIVALS>,
+    /// Who, where, and on the way where to.
+    rivals: Vec<(u8, Voxel, Voxel), RIVALS>,
     /// Known voxels when nothing was left.
     stopped_at: Option<u32>,
     work: u32,
@@ -123,13 +124,18 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.done.set(at);
     }
 
-    /// Takes in where robot `id` is: a hint.
-    pub fn hear(&mut self, id: u8, at: Voxel) {
+    /// Where the robot is on its way to, or was last.
+    pub const fn goal(&self) -> Voxel {
+        self.goal
+    }
+
+    /// Takes in where robot `id` is, and its [`goal`](Self::goal): hints.
+    pub fn hear(&mut self, id: u8, at: Voxel, goal: Voxel) {
         if let Some(rival) = self.rivals.iter_mut().find(|rival| rival.0 == id) {
-            rival.1 = at;
+            *rival = (id, at, goal);
         } else {
             // A sixteenth robot is nobody's rival, which costs time only.
-            let _ = self.rivals.push((id, at));
+            let _ = self.rivals.push((id, at, goal));
         }
     }
 

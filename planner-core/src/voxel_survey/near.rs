@@ -49,11 +49,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             if gain == 0 {
                 continue;
             }
-            let here = place.at.distance_squared(self.position);
+            let own = place.at.distance_squared(self.position);
+            let is_nearer = |voxel: Voxel| place.at.distance_squared(voxel) < own;
             let is_rivals = self
                 .rivals
                 .iter()
-                .any(|(_, rival)| place.at.distance_squared(*rival) < here);
+                .any(|&(_, at, goal)| is_nearer(at) || is_nearer(goal));
             let share = if is_rivals { 0.25 } else { 1.0 };
             let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
             if best.is_none_or(|(most, _)| score > most) {

@@ -5,9 +5,10 @@ mod coverage;
 mod oblique;
 mod top;
 
-pub use animation::animation;
+pub use animation::{animate, animation};
 pub use coverage::coverage_plot;
 pub use oblique::oblique_view;
+pub(super) use oblique::{Block, oblique};
 pub use top::top_view;
 
 use std::io;

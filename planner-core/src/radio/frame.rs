@@ -106,10 +106,7 @@ impl fmt::Display for FrameError {
                 f,
                 "the frame is of version {version}, this planner reads version {VERSION}"
             ),
-            Self::Kind(kind) => write!(
-                f,
-                "the frame is of kind {kind}, this planner reads kind {OCCUPANCY}"
-            ),
+            Self::Kind(kind) => write!(f, "this planner does not read frames of kind {kind}"),
             Self::Check => write!(f, "the frame's check bytes do not match"),
             Self::OtherGrid(grid) => write!(
                 f,

@@ -201,8 +201,11 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
                 continue;
             }
             let mine = label == self.own_label;
-            let mut hits = cells & frontier & !self.wave.taken(at);
-            if mine {
+            let mut hits = cells & frontier;
+            if hits != 0 {
+                hits &= !self.wave.taken(at);
+            }
+            if mine && hits != 0 {
                 hits &= !around.closed.mask(at, around.now);
             }
             if hits == 0 {

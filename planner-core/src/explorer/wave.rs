@@ -1,5 +1,5 @@
 //! Waves over the tiles of the whole map, layer by layer, in slices: no queue of
-//! cells, 64 bytes a tile.
+//! cells, 68 bytes a tile.
 //!
 //! A wave is either the *sweep*, in which several robots' waves run at once and
 //! each cell carries the label of the robot that reached it, or a *route*, in
@@ -14,7 +14,7 @@ pub(crate) const LABELS: usize = 16;
 /// The layers of one tile.
 #[derive(Clone, Copy)]
 struct WaveTile {
-    /// Cells that a wave has reached.
+    /// Cells that belong to a wave.
     reached: u64,
     /// Cells reached in the last layer and in this one, by the layer's parity.
     front: [u64; 2],
@@ -22,6 +22,27 @@ struct WaveTile {
     taken: u64,
     /// Sweep: the label's four bits. Route: the direction's two bits.
     mark: [u64; 4],
+}
+
+/// Up to when a tile is current.
+#[derive(Clone, Copy)]
+struct Stamp {
+    /// The wave that everything in the tile is of, but `taken`; 0: of none.
+    round: u16,
+    /// The labels whose cells have been given up in this tile, a bit a label.
+    given_up: u16,
+}
+
+impl Stamp {
+    const NONE: Self = Self {
+        round: 0,
+        given_up: 0,
+    };
+}
+
+/// All cells or none.
+const fn all_if(condition: bool) -> u64 {
+    (condition as u64).wrapping_neg()
 }
 
 impl WaveTile {
@@ -34,46 +55,51 @@ impl WaveTile {
 
     /// The cells that carry this label.
     fn labelled(&self, label: u8) -> u64 {
-        self.mark
-            .iter()
-            .enumerate()
-            .fold(u64::MAX, |cells, (place, &plane)| {
-                cells
-                    & if label >> place & 1 == 1 {
-                        plane
-                    } else {
-                        !plane
-                    }
-            })
+        let [a, b, c, d] = self.mark;
+        (a ^ all_if(label & 1 == 0))
+            & (b ^ all_if(label & 2 == 0))
+            & (c ^ all_if(label & 4 == 0))
+            & (d ^ all_if(label & 8 == 0))
     }
 
     /// The number that the marks of a cell spell.
     fn mark_of(&self, bit: u64) -> u8 {
-        self.mark
-            .iter()
-            .rev()
-            .fold(0, |number, &plane| number << 1 | u8::from(plane & bit != 0))
+        let [a, b, c, d] = self.mark.map(|plane| u8::from(plane & bit != 0));
+        a | b << 1 | c << 2 | d << 3
     }
 
-    fn set_mark(&mut self, cells: u64, number: u8) {
-        for (place, plane) in self.mark.iter_mut().enumerate() {
-            if number >> place & 1 == 1 {
-                *plane |= cells;
-            } else {
-                *plane &= !cells;
-            }
+    /// What the robots in `labels` (a bit a label) had reached belongs to nobody any more.
+    fn give_up(&mut self, mut labels: u16) {
+        while labels != 0 {
+            self.reached &= !self.labelled(labels.trailing_zeros() as u8);
+            labels &= labels - 1;
         }
     }
-}
 
-/// What a wave has left where it has not been.
-const EMPTY: &WaveTile = &WaveTile::EMPTY;
+    /// Adds `cells` to the layer after the one of this parity.
+    fn advance(&mut self, cells: u64, number: u8, parity: usize) {
+        self.reached |= cells;
+        for (place, plane) in self.mark.iter_mut().enumerate() {
+            *plane = *plane & !cells | cells & all_if(number >> place & 1 == 1);
+        }
+        let [even, odd] = &mut self.front;
+        let (now, next) = if parity == 0 {
+            (even, odd)
+        } else {
+            (odd, even)
+        };
+        // A cell that changes hands is not in this layer any more.
+        *now &= !cells;
+        *next |= cells;
+    }
+}
 
 /// The state of a wave over a map of `TW`×`TH` tiles.
 pub(crate) struct Wave<const TW: usize, const TH: usize> {
     tiles: [[WaveTile; TW]; TH],
-    /// The tiles that hold something of this wave; all others count as empty.
-    touched: TileSet<TH>,
+    stamps: [[Stamp; TW]; TH],
+    /// The number of this wave: tiles of earlier ones count as empty.
+    round: u16,
     /// The tiles with frontier cells that are spoken for.
     spoken: TileSet<TH>,
     /// Tiles with a front, by the layer's parity.
@@ -85,16 +111,25 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     pub(crate) const fn new() -> Self {
         Self {
             tiles: [[WaveTile::EMPTY; TW]; TH],
-            touched: TileSet::new(),
+            stamps: [[Stamp::NONE; TW]; TH],
+            round: 0,
             spoken: TileSet::new(),
             active: [TileSet::new(); 2],
             layer: 0,
         }
     }
 
-    /// Forgets all waves, but not who is spoken for. Work: three words a row of tiles.
+    /// Forgets all waves, but not who is spoken for. Work: two words a row of tiles.
     pub(crate) fn clear(&mut self) {
-        self.touched.clear();
+        self.round = self.round.checked_add(1).unwrap_or(1);
+        // One stamp in turn is wiped, so none gets so old that its number comes again.
+        let turn = usize::from(self.round).checked_rem(TW * TH);
+        if let Some(turn) = turn
+            && let Some(row) = self.stamps.get_mut(turn / TW)
+            && let Some(stamp) = row.get_mut(turn % TW)
+        {
+            *stamp = Stamp::NONE;
+        }
         self.active = [TileSet::new(); 2];
         self.layer = 0;
     }
@@ -118,59 +153,61 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         if self.layer & 1 == 0 { even } else { odd }
     }
 
-    /// The tile of this wave, empty where it has not been.
-    fn tile(&self, at: TileIndex) -> &WaveTile {
-        if self.touched.contains(at) {
-            self.stored(at)
-        } else {
-            EMPTY
-        }
+    fn active_next(&mut self) -> &mut TileSet<TH> {
+        let [even, odd] = &mut self.active;
+        if self.layer & 1 == 0 { odd } else { even }
     }
 
-    fn stored(&self, at: TileIndex) -> &WaveTile {
-        self.tiles
-            .get(usize::from(at.y))
-            .and_then(|row| row.get(usize::from(at.x)))
-            .unwrap_or(EMPTY)
+    /// The tile, if this wave has been there.
+    fn tile(&self, at: TileIndex) -> Option<&WaveTile> {
+        let (x, y) = (usize::from(at.x), usize::from(at.y));
+        let is_current = self.stamps.get(y)?.get(x)?.round == self.round;
+        if is_current { self.stored(at) } else { None }
     }
 
-    fn tile_mut(&mut self, at: TileIndex) -> Option<&mut WaveTile> {
-        let tile = self
-            .tiles
-            .get_mut(usize::from(at.y))?
-            .get_mut(usize::from(at.x))?;
-        if !self.touched.contains(at) {
+    fn stored(&self, at: TileIndex) -> Option<&WaveTile> {
+        self.tiles.get(usize::from(at.y))?.get(usize::from(at.x))
+    }
+
+    fn tile_mut(&mut self, at: TileIndex) -> Option<(&mut WaveTile, &mut Stamp)> {
+        let (x, y) = (usize::from(at.x), usize::from(at.y));
+        let tile = self.tiles.get_mut(y)?.get_mut(x)?;
+        let stamp = self.stamps.get_mut(y)?.get_mut(x)?;
+        if stamp.round != self.round {
+            *stamp = Stamp {
+                round: self.round,
+                given_up: 0,
+            };
             *tile = WaveTile {
                 taken: tile.taken,
                 ..WaveTile::EMPTY
             };
-            self.touched.insert(at);
         }
-        Some(tile)
+        Some((tile, stamp))
     }
 
     /// Starts a wave with this label in a cell that none has reached. Only in layer 0.
     pub(crate) fn seed(&mut self, cell: Cell, label: u8) {
         if let Some((at, bit)) = TileIndex::of(cell)
-            && let Some(tile) = self.tile_mut(at)
+            && let Some((tile, _)) = self.tile_mut(at)
             && tile.reached & bit == 0
         {
-            tile.reached |= bit;
-            tile.front[0] |= bit;
-            tile.set_mark(bit, label);
+            tile.advance(bit, label, 1);
             self.active[0].insert(at);
         }
     }
 
     /// Whether a wave has reached the cell.
     pub(crate) fn is_reached(&self, cell: Cell) -> bool {
-        TileIndex::of(cell).is_some_and(|(at, bit)| self.tile(at).reached & bit != 0)
+        TileIndex::of(cell)
+            .and_then(|(at, bit)| Some(self.tile(at)?.reached & bit != 0))
+            .unwrap_or(false)
     }
 
     /// In a route: the direction back to where it started.
     pub(crate) fn direction_at(&self, cell: Cell) -> Option<Direction> {
         let (at, bit) = TileIndex::of(cell)?;
-        let tile = self.tile(at);
+        let tile = self.tile(at)?;
         (tile.reached & bit != 0).then(|| Direction::from_index(tile.mark_of(bit)))
     }
 
@@ -182,24 +219,24 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
         let at = self.active_now().pop_first()?;
         let parity = self.parity();
-        let tile = self.tile_mut(at)?;
+        let (tile, _) = self.tile_mut(at)?;
         Some((at, core::mem::take(tile.front.get_mut(parity)?)))
     }
 
     /// Splits the front of a tile by label: the label of its first cell, and all
     /// cells that carry it.
     pub(crate) fn first_label(&self, at: TileIndex, front: u64) -> (u8, u64) {
-        let tile = self.tile(at);
-        let label = tile.mark_of(front & front.wrapping_neg());
-        (label, front & tile.labelled(label))
+        self.tile(at).map_or((0, front), |tile| {
+            let label = tile.mark_of(front & front.wrapping_neg());
+            (label, front & tile.labelled(label))
+        })
     }
 
     /// The frontier cells of a tile that are spoken for.
     pub(crate) fn taken(&self, at: TileIndex) -> u64 {
-        if self.spoken.contains(at) {
-            self.stored(at).taken
-        } else {
-            0
+        match self.stored(at) {
+            Some(tile) if self.spoken.contains(at) => tile.taken,
+            _ => 0,
         }
     }
 
@@ -207,30 +244,11 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     pub(crate) fn take(&mut self, at: TileIndex, cells: u64) {
         let taken = self.taken(at) | cells;
         if taken != 0
-            && let Some(tile) = self.tile_mut(at)
+            && let Some((tile, _)) = self.tile_mut(at)
         {
             tile.taken = taken;
             self.spoken.insert(at);
         }
-    }
-
-    /// Adds `cells` to the next layer.
-    fn advance(&mut self, at: TileIndex, cells: u64, mark: u8) {
-        let parity = self.parity();
-        if let Some(tile) = self.tile_mut(at) {
-            tile.reached |= cells;
-            tile.set_mark(cells, mark);
-            // A cell that changes hands is not in this layer any more.
-            for (place, front) in tile.front.iter_mut().enumerate() {
-                if place == parity {
-                    *front &= !cells;
-                } else {
-                    *front |= cells;
-                }
-            }
-        }
-        let [even, odd] = &mut self.active;
-        if self.layer & 1 == 0 { odd } else { even }.insert(at);
     }
 
     /// Sweep: one step of the wave `label` from `cells` of a tile, into `free`
@@ -246,41 +264,31 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let within = Direction::ALL
             .into_iter()
             .fold(0, |moved, direction| moved | shifted(cells, direction));
-        self.claim(at, within, label, served, &free);
+        self.claim(at, within & free(at), label, served);
         for direction in Direction::ALL {
             let moved = carried(cells, direction);
             if moved != 0
                 && let Some(next) = at.neighbour(direction)
             {
-                self.claim(next, moved, label, served, &free);
+                self.claim(next, moved & free(next), label, served);
             }
         }
     }
 
-    fn claim(
-        &mut self,
-        at: TileIndex,
-        cells: u64,
-        label: u8,
-        served: u16,
-        free: &impl Fn(TileIndex) -> u64,
-    ) {
-        let cells = cells & free(at);
-        if cells == 0 {
-            return;
-        }
-        let tile = self.tile(at);
-        let mut open = cells & !tile.reached;
-        let contested = cells & tile.reached;
-        if contested != 0 && served != 0 {
-            for other in 0..LABELS as u8 {
-                if served >> other & 1 == 1 {
-                    open |= contested & tile.labelled(other);
-                }
+    fn claim(&mut self, at: TileIndex, cells: u64, label: u8, served: u16) {
+        let parity = self.parity();
+        if cells != 0
+            && let Some((tile, stamp)) = self.tile_mut(at)
+        {
+            if cells & tile.reached != 0 {
+                tile.give_up(served & !stamp.given_up);
+                stamp.given_up |= served;
             }
-        }
-        if open != 0 {
-            self.advance(at, open, label);
+            let open = cells & !tile.reached;
+            if open != 0 {
+                tile.advance(open, label, parity);
+                self.active_next().insert(at);
+            }
         }
     }
 
@@ -293,19 +301,29 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         free: impl Fn(TileIndex) -> u64,
     ) {
         for direction in Direction::ALL {
-            let back = direction.opposite() as u8;
-            let within = shifted(cells, direction) & free(at) & !self.tile(at).reached;
-            if within != 0 {
-                self.advance(at, within, back);
-            }
+            self.enter(at, shifted(cells, direction), direction, &free);
             let moved = carried(cells, direction);
             if moved != 0
                 && let Some(next) = at.neighbour(direction)
             {
-                let entered = moved & free(next) & !self.tile(next).reached;
-                if entered != 0 {
-                    self.advance(next, entered, back);
-                }
+                self.enter(next, moved, direction, &free);
+            }
+        }
+    }
+
+    fn enter(
+        &mut self,
+        at: TileIndex,
+        cells: u64,
+        direction: Direction,
+        free: &impl Fn(TileIndex) -> u64,
+    ) {
+        let parity = self.parity();
+        if let Some((tile, _)) = self.tile_mut(at) {
+            let open = cells & !tile.reached & free(at);
+            if open != 0 {
+                tile.advance(open, direction.opposite() as u8, parity);
+                self.active_next().insert(at);
             }
         }
     }

@@ -255,6 +255,10 @@ impl<const TH: usize> Link<TH> {
         let mut learnt = Learnt::default();
         for record in &frame.tiles {
             learnt += map.join_tile(record.at, record.tile);
+            if map.tile_inside(record.at) == record.tile {
+                // The sender knows all of it.
+                self.outbox.told(record.at);
+            }
         }
         map.take_changed();
         let is_news = self.is_news(frame.sender, frame.sequence);

@@ -9,8 +9,8 @@ const REPEAT: u8 = 3;
 /// Unknown tiles that the turn passes over at a time.
 const STRIDE: u8 = 8;
 
-/// Tiles to send: what was newly seen first, then the same once more, then every
-/// tile in turn, for those who missed it or came late.
+/// Tiles to send: what was newly seen first, then the same once more (unless others
+/// have told it), then every tile in turn, for those who missed it or came late.
 ///
 /// Nothing starves: new tiles are taken round and round, so one that keeps
 /// changing waits for the others; while they come faster than they can be sent,
@@ -42,6 +42,17 @@ impl<const TH: usize> Outbox<TH> {
     /// Tiles that the robot has seen change.
     pub(crate) fn add(&mut self, tiles: &TileSet<TH>) {
         self.fresh.extend(tiles);
+    }
+
+    /// Somebody else has told all that this robot knows of the tile: once is as
+    /// good as telling it, twice as good as repeating it.
+    pub(crate) fn told(&mut self, tile: TileIndex) {
+        if self.fresh.contains(tile) {
+            self.fresh.remove(tile);
+            self.again.insert(tile);
+        } else {
+            self.again.remove(tile);
+        }
     }
 
     /// The tile to send next; `None` where the turn meets [`STRIDE`] tiles on end

@@ -36,6 +36,19 @@ fn pop_after_goes_round_and_round() {
 }
 
 #[test]
+fn what_others_tell_is_repeated_at_most() {
+    let mut outbox = Small::new();
+    outbox.add(&set(&[5, 6, 7]));
+    outbox.told(tile(5));
+    outbox.told(tile(6));
+    outbox.told(tile(6));
+    let sent: Vec<_> = (0..6)
+        .filter_map(|_| outbox.next(TILES, |_| false))
+        .collect();
+    assert_eq!(sent, [tile(7), tile(5), tile(7)]);
+}
+
+#[test]
 fn nothing_known_is_nothing_to_send() {
     let mut outbox = Small::new();
     assert!((0..1000).all(|_| outbox.next(TILES, |_| false).is_none()));

@@ -113,7 +113,7 @@ fn block(picture: &mut RgbImage, block: &Block, highest: f32, view: View) {
     let wide = scale as i32;
     let deep = ((block.top - block.bottom) * scale) as i32;
     for dx in -wide..=wide {
-        let half = (scale * 0.5 * (1.0 - dx.abs() as f32 / scale)) as i32;
+        let half = (scale * 0.5 * (1.0 - dx.abs() as f32 / scale)).ceil() as i32;
         for dy in -half..=half {
             put(picture, x + dx as f32, y + dy as f32, colour);
         }

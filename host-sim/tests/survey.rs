@@ -155,55 +155,6 @@ fn octomap_reads_any_tree() {
     check_with_octomap(&tree, "any.bt");
 }
 
-/// The decisions of a few whole surveys, bit for bit: `fixtures/golden-survey.txt`.
-/// After a change that is meant to change decisions, `GOLDEN=refresh cargo test -p
-/// host-sim --test survey golden` writes the file anew.
-#[cfg(not(feature = "micromath"))]
-#[test]
-fn decisions_are_those_of_the_golden_traces() {
-    let path =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../fixtures/golden-survey.txt");
-    let mut fresh = String::from(
-        "# planner terrain robots loss = ticks digest, checked by host-sim/tests/survey.rs\n",
-    );
-    for planner in OWN {
-        // A town is drawn in whole numbers: the same on every host.
-        let terrain = Terrain::urban(1, 40);
-        let scenario = Scenario {
-            medium: MediumKind::Radio,
-            loss: 0.2,
-            ..Scenario::new(planner, 3, 1)
-        };
-        let trace = run(&terrain, &scenario).unwrap();
-        fresh += &format!(
-            "{planner} urban-1 3 0.2 = {} {}\n",
-            trace.seen.len() - 1,
-            trace.digest()
-        );
-    }
-    let scenario = voxels::Scenario {
-        robots: 2,
-        range: 6,
-        loss: 0.2,
-        seed: 1,
-        max_ticks: 20_000,
-    };
-    let trace = voxels::run(&voxels::Scene::town(1, 28), &scenario).unwrap();
-    fresh += &format!(
-        "voxel-survey town-1 2 0.2 = {} {}\n",
-        trace.seen.len() - 1,
-        trace.digest()
-    );
-    if std::env::var_os("GOLDEN").is_some() {
-        std::fs::write(&path, &fresh).unwrap();
-    }
-    let golden = std::fs::read_to_string(&path).unwrap();
-    assert_eq!(
-        golden, fresh,
-        "if that is meant: GOLDEN=refresh cargo test -p host-sim --test survey golden"
-    );
-}
-
 /// Two robots map a town of voxels to the last one that can be seen, and OctoMap reads
 /// it.
 #[test]

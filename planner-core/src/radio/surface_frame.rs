@@ -113,9 +113,10 @@ impl HeightRecord {
     }
 }
 
-/// `position` as it travels: rounded to 1/128 of a cell; 0 and 511.99 beyond the ends.
+/// `position` as it travels: rounded down to 1/128 of a cell, so that it
+/// stays in its column; 0 and 511.99 beyond the ends.
 pub(crate) fn position_on_wire(position: Point) -> [u16; 3] {
-    [position.x, position.y, position.z].map(|v| (v * PER_CELL + 0.5) as u16)
+    [position.x, position.y, position.z].map(|v| (v * PER_CELL) as u16)
 }
 
 impl SurfaceFrame {

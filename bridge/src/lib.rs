@@ -22,7 +22,7 @@ pub use message::{
 };
 pub use survey::{
     LOOK, PatchRecord, SEEN, Seen, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
-    relief, told,
+    imprint, relief, told,
 };
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 

@@ -4,6 +4,7 @@
 //! simulator sends [`SurveyRequest`]s, and the image a [`SurveyAnswer`] to each.
 
 use heapless::Vec;
+use planner_core::radio::{FrameError, LinkConfig};
 use planner_core::surface::{Bits, Column, Height, Patch, Surface, Tile};
 use planner_core::survey::{Action, Knowledge, Motion, Status};
 use planner_core::{Point, coordinated_survey, fcao};
@@ -29,6 +30,16 @@ pub enum SurveyorConfig {
     Coordinated(coordinated_survey::Config),
 }
 
+impl SurveyorConfig {
+    /// How the robot uses the radio.
+    pub const fn link(&self) -> &LinkConfig {
+        match self {
+            Self::Fcao(config) => &config.link,
+            Self::Coordinated(config) => &config.link,
+        }
+    }
+}
+
 /// A verb of [`Surveyor`](planner_core::survey::Surveyor), or something about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[expect(
@@ -47,8 +58,13 @@ pub enum SurveyRequest<'a> {
     Merge(PatchRecord<'a>),
     /// [`SurveyReply::Decided`].
     Tick,
-    /// [`SurveyReply::Done`].
-    Report(Motion),
+    /// How the flight went, and where the robot is; [`SurveyReply::Done`].
+    Report(Motion, Point),
+    /// [`SurveyReply::Sent`].
+    Transmit,
+    /// A frame; [`SurveyReply::Heard`].
+    #[serde(borrow)]
+    Receive(&'a [u8]),
     /// [`SurveyReply::Memory`].
     Memory,
     /// The image ends, without an answer.
@@ -86,6 +102,10 @@ pub enum SurveyReply {
         /// [`relief`] of the map.
         map: u32,
     },
+    /// [`imprint`] of the frame written, if there was one.
+    Sent(Option<u32>),
+    /// What a frame brought.
+    Heard(Result<u32, FrameError>),
     /// What the image takes.
     Memory(Memory),
 }
@@ -159,24 +179,32 @@ pub fn told<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> 
     hash(knowledge.patches())
 }
 
+/// A number that tells frames apart.
+pub fn imprint(frame: &[u8]) -> u32 {
+    folded(
+        frame
+            .iter()
+            .fold(SEED, |hash, &byte| eat(hash, byte.into())),
+    )
+}
+
 /// FNV-1a over what the patches say, folded.
 fn hash(patches: impl Iterator<Item = Patch>) -> u32 {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut eat = |word: u64| hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-    for patch in patches {
+    folded(patches.fold(SEED, |hash, patch| {
         let Tile { x, y } = patch.tile;
-        eat(u64::from_le_bytes([
-            x,
-            y,
-            patch.fresh.into(),
-            0,
-            0,
-            0,
-            0,
-            0,
-        ]));
-        eat(patch.cells);
-        heights_of(&patch).for_each(|height| eat(height.into()));
-    }
+        let head = u64::from_le_bytes([x, y, patch.fresh.into(), 0, 0, 0, 0, 0]);
+        heights_of(&patch).fold(eat(eat(hash, head), patch.cells), |hash, height| {
+            eat(hash, height.into())
+        })
+    }))
+}
+
+const SEED: u64 = 0xcbf2_9ce4_8422_2325;
+
+const fn eat(hash: u64, word: u64) -> u64 {
+    (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3)
+}
+
+const fn folded(hash: u64) -> u32 {
     (hash ^ hash >> 32) as u32
 }

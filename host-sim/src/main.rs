@@ -28,7 +28,7 @@ enum Command {
     /// Map an unknown surface with flying robots.
     ///
     /// Exit status: 0 every column was seen, 1 something was left, 2 bad input.
-    Survey(host_sim::survey::SurveyArgs),
+    Survey(command::Survey),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
     /// Serve a map to robots that are processes of their own.
@@ -47,7 +47,7 @@ fn main() -> ExitCode {
         Command::Firmware(firmware) => firmware.run(),
         Command::Compare(compare) => compare.run(),
         Command::Figures(figures) => figures.run(),
-        Command::Survey(survey) => command::survey(&survey),
+        Command::Survey(survey) => survey.run(),
         Command::Generate(generate) => generate.run(),
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),

@@ -20,6 +20,8 @@ pub mod rng;
 pub mod sight;
 pub mod surface;
 pub mod survey;
+pub mod volume;
+pub mod voxel_survey;
 
 pub use cell::{Cell, Direction, Extent};
 pub use map::{Learnt, Map, TileSet};

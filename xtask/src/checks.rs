@@ -96,7 +96,18 @@ const CHECKS: &[Check] = &[
         name: "test",
         title: "unit, property, cross-crate and documentation tests",
         run: || {
+            install::octomap()?;
             repeatable(cargo(["test", "--workspace", "--locked", "--no-fail-fast"]))
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
+        name: "octomap",
+        title: "OctoMap's own tools read the maps of surveys",
+        run: || {
+            install::octomap()?;
+            repeatable(cargo(["test", "-p=host-sim", "--test=survey", "octomap"]))
                 .run()
                 .map(nothing)
         },

@@ -89,6 +89,15 @@ pub(crate) fn c_compiler() -> Result<()> {
     package(C_COMPILER, "gcc-arm-none-eabi")
 }
 
+/// OctoMap's tools, which say what they are when called without arguments.
+pub(crate) fn octomap() -> Result<()> {
+    let there = ["bt2vrml", "convert_octree"].map(|tool| command(tool).output().is_ok());
+    match there {
+        [true, true] => Ok(()),
+        _ => install("bt2vrml", "octomap-tools"),
+    }
+}
+
 /// A program, from the system's package manager.
 fn package(program: &str, package: &str) -> Result<()> {
     if command(program)
@@ -98,6 +107,11 @@ fn package(program: &str, package: &str) -> Result<()> {
     {
         return Ok(());
     }
+    install(program, package)
+}
+
+/// The same when it is known to be missing.
+fn install(program: &str, package: &str) -> Result<()> {
     if command("apt-get").arg("--version").output().is_err() {
         bail!(
             "{program} is missing, and only apt-get is known here; install it with the \

@@ -3,9 +3,10 @@
 use std::rc::Rc;
 
 use bridge::{
-    LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig, relief,
-    told,
+    LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig, imprint,
+    relief, told,
 };
+use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
 use planner_core::survey::{Action, Knowledge, Motion, Status, Surveyor};
 use planner_core::{Extent, Point, RobotId};
@@ -45,20 +46,8 @@ impl<const T: usize> Surveyor<T, T> for Mirror<T> {
     }
 
     fn tick(&mut self) -> Action {
-        self.0.settle();
+        self.0.begin_tick();
         Action::Hover
-    }
-
-    fn status(&self) -> Status {
-        Status {
-            position: self.0.position(),
-            target: None,
-            stopped: false,
-        }
-    }
-
-    fn work(&self) -> u32 {
-        0
     }
 }
 
@@ -216,6 +205,11 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
             return Action::Hover;
         };
         self.work = work;
+        // What was decided goes into frames.
+        self.mirror.0.set_target(self.status.target);
+        if let Action::Stop(reason) = action {
+            self.mirror.0.stop(reason);
+        }
         let known = &self.mirror.0;
         let here = [known.gain(), known.reward()].map(f32::to_bits);
         if here != [gain, reward].map(f32::to_bits) || map != relief(known.surface()) {
@@ -224,9 +218,32 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         action
     }
 
-    fn report(&mut self, motion: Motion) {
-        self.mirror.report(motion);
-        self.tell(Some(Call::Report), &SurveyRequest::Report(motion));
+    fn report(&mut self, motion: Motion, at: Point) {
+        self.mirror.report(motion, at);
+        self.tell(Some(Call::Report), &SurveyRequest::Report(motion, at));
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let length = self.mirror.transmit(buffer);
+        let sent = length.and_then(|length| buffer.get(..length)).map(imprint);
+        match self.ask(Some(Call::Transmit), &SurveyRequest::Transmit) {
+            None => {}
+            Some(SurveyReply::Sent(theirs)) if theirs == sent => {}
+            Some(SurveyReply::Sent(_)) => self.other_map(),
+            Some(reply) => self.misunderstood(&reply),
+        }
+        length
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
+        let heard = self.mirror.receive(bytes);
+        match self.ask(Some(Call::Receive), &SurveyRequest::Receive(bytes)) {
+            None => {}
+            Some(SurveyReply::Heard(theirs)) if theirs == heard => {}
+            Some(SurveyReply::Heard(_)) => self.other_map(),
+            Some(reply) => self.misunderstood(&reply),
+        }
+        heard
     }
 
     fn status(&self) -> Status {

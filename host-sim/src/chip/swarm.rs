@@ -112,7 +112,7 @@ impl survey::Host for Swarm {
         planner: SurveyorConfig,
         id: u8,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
-        let knowledge = Knowledge::new(extent, limits)?;
+        let knowledge = Knowledge::new(extent, limits, *planner.link(), RobotId(id))?;
         let chip = Chip::start(RobotId(id), self.machine, &self.image, self.limit);
         let book = self.book.clone();
         Ok(Box::new(SurveyProxy::new(

@@ -73,16 +73,25 @@ impl FaultArgs {
                 ));
             }
         }
-        let each = |events: &[Event]| events.iter().copied().map(Event::parts);
+        let robot = |event: &Event| RobotId(event.robot);
         Ok(Faults {
-            deaths: each(&self.kill)
-                .map(|(robot, tick)| Death { robot, tick })
+            deaths: (self.kill.iter())
+                .map(|event| Death {
+                    robot: robot(event),
+                    tick: event.tick,
+                })
                 .collect(),
-            arrivals: each(&self.late)
-                .map(|(robot, tick)| Arrival { robot, tick })
+            arrivals: (self.late.iter())
+                .map(|event| Arrival {
+                    robot: robot(event),
+                    tick: event.tick,
+                })
                 .collect(),
-            restarts: each(&self.restart)
-                .map(|(robot, tick)| Restart { robot, tick })
+            restarts: (self.restart.iter())
+                .map(|event| Restart {
+                    robot: robot(event),
+                    tick: event.tick,
+                })
                 .collect(),
             closures: Vec::new(),
         })
@@ -94,12 +103,6 @@ impl FaultArgs {
 struct Event {
     robot: u8,
     tick: u32,
-}
-
-impl Event {
-    const fn parts(self) -> (RobotId, u32) {
-        (RobotId(self.robot), self.tick)
-    }
 }
 
 impl FromStr for Event {

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use clap::Args;
 use host_sim::experiments::figures::{Effort, Figure, figures, measure, page};
 use host_sim::experiments::to_csv;
+use host_sim::survey::figures as survey;
 use host_sim::world::{ReadOptions, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -19,7 +20,8 @@ pub(crate) struct Figures {
     /// Folder for the figures.
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     out: PathBuf,
-    /// These figures only: fig6 to fig11, minpos.
+    /// These figures only: fig6 to fig11, minpos; in 3-D fcao3, fcao4, fcao6,
+    /// fcao-robots, fcao-work.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     only: Vec<String>,
     /// A few runs only, to see that all is well.
@@ -58,7 +60,26 @@ impl Figures {
             })?;
             measured.push(done);
         }
-        let page = page(&measured);
+        let mut surveys = Vec::new();
+        for id in survey::FIGURES {
+            if !self.is_wanted(id) {
+                continue;
+            }
+            bar.set_message(id);
+            let terrains = if self.quick { 3 } else { 100 };
+            if let Some(figure) = survey::figure(id, terrains)? {
+                let svg = figure.chart.svg()?;
+                folder.write(format!("{id}.svg"), |file| {
+                    Ok(file.write_all(svg.as_bytes())?)
+                })?;
+                folder.write(format!("{id}.png"), |file| figure.chart.write_png(file))?;
+                folder.write(format!("{id}.csv"), |file| {
+                    Ok(file.write_all(figure.csv.as_bytes())?)
+                })?;
+                surveys.push(figure);
+            }
+        }
+        let page = page(&measured, &surveys);
         folder.write("index.html", |file| Ok(file.write_all(page.as_bytes())?))?;
         folder.close()?;
         bar.finish_and_clear();
@@ -78,20 +99,22 @@ impl Figures {
         let hospital = self.hospital.as_ref();
         let hospital = hospital.map(|path| World::read(path, &options).map(Arc::new));
         let mut figures = figures(effort, hospital.transpose()?);
-        if let Some(unknown) = self
-            .only
-            .iter()
-            .find(|id| figures.iter().all(|figure| figure.id != **id))
-        {
-            let ids: Vec<_> = figures.iter().map(|figure| figure.id).collect();
+        if let Some(unknown) = self.only.iter().find(|id| {
+            figures.iter().all(|figure| figure.id != **id)
+                && !survey::FIGURES.contains(&id.as_str())
+        }) {
+            let ids = figures.iter().map(|figure| figure.id);
+            let ids: Vec<_> = ids.chain(survey::FIGURES).collect();
             return Err(
                 format!("--only: no figure {unknown}; there are {}", ids.join(", ")).into(),
             );
         }
-        if !self.only.is_empty() {
-            figures.retain(|figure| self.only.iter().any(|id| figure.id == *id));
-        }
+        figures.retain(|figure| self.is_wanted(figure.id));
         Ok(figures)
+    }
+
+    fn is_wanted(&self, id: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|wanted| wanted == id)
     }
 
     fn progress_bar(&self, runs: usize) -> ProgressBar {

@@ -10,6 +10,7 @@ mod folder;
 mod generate;
 mod live;
 mod report;
+mod survey;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -21,17 +22,7 @@ pub(crate) use figures::Figures;
 pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
 pub(crate) use live::{Robot, World};
+pub(crate) use survey::Survey;
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;
-
-/// `host-sim survey`.
-pub(crate) fn survey(survey: &host_sim::survey::SurveyArgs) -> Done {
-    let (report, complete) = survey.run()?;
-    println!("{report}");
-    Ok(if complete {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
-}

@@ -177,7 +177,7 @@ fn every_figure_can_be_drawn() {
         chart.write_png(std::io::sink()).unwrap();
         measured.push(done);
     }
-    let page = page(&measured);
+    let page = page(&measured, &[]);
     for id in ["fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "minpos"] {
         assert!(page.contains(&format!("<img src=\"{id}.svg\"")));
     }

@@ -1,11 +1,10 @@
 //! The methods that FCAO is compared with [Renzaglia2019 §5]. Both fly by the same
 //! rules as the planners of the core.
 
+use planner_core::radio::LinkConfig;
 use planner_core::surface::{Bits, Surface};
-use planner_core::survey::{
-    Action, Knowledge, Limits, PATIENCE, SetupError, Status, Stop, Surveyor,
-};
-use planner_core::{Cell, Extent, Point};
+use planner_core::survey::{Action, Knowledge, Limits, PATIENCE, SetupError, Surveyor};
+use planner_core::{Cell, Extent, Point, RobotId};
 
 /// Who chooses the frontier that a [`Follower`] flies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,28 +20,29 @@ pub enum Guide {
 pub struct Follower<const TW: usize, const TH: usize> {
     knowledge: Knowledge<TW, TH>,
     guide: Guide,
-    target: Option<Cell>,
-    stopped: bool,
-    work: u32,
+    order: (Option<Cell>, u32),
 }
 
 impl<const TW: usize, const TH: usize> Follower<TW, TH> {
     /// A robot over a surface of `extent` columns.
-    pub fn new(extent: Extent, limits: Limits, guide: Guide) -> Result<Self, SetupError> {
-        let knowledge = Knowledge::new(extent, limits)?;
+    pub fn new(
+        extent: Extent,
+        limits: Limits,
+        link: LinkConfig,
+        id: RobotId,
+        guide: Guide,
+    ) -> Result<Self, SetupError> {
+        let knowledge = Knowledge::new(extent, limits, link, id)?;
         Ok(Self {
             knowledge,
             guide,
-            target: None,
-            stopped: false,
-            work: 0,
+            order: (None, 0),
         })
     }
 
     /// The centre's orders, which cost `work` to find.
     pub fn send_to(&mut self, target: Option<Cell>, work: u32) {
-        self.target = target;
-        self.work = work;
+        self.order = (target, work);
     }
 }
 
@@ -55,29 +55,18 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
         &mut self.knowledge
     }
 
-    fn status(&self) -> Status {
-        Status {
-            position: self.knowledge.position(),
-            target: self.target,
-            stopped: self.stopped,
-        }
-    }
-
-    fn work(&self) -> u32 {
-        self.work
-    }
-
     fn tick(&mut self) -> Action {
-        self.knowledge.settle();
-        self.stopped = self.knowledge.surface().frontiers() == 0;
-        if self.stopped {
-            return Action::Stop(Stop::Complete);
+        if let Some(complete) = self.knowledge.begin_tick() {
+            return complete;
         }
         let stuck = self.knowledge.idle() >= PATIENCE;
-        if self.guide == Guide::Closest || stuck {
-            let here = self.knowledge.position();
-            (self.target, self.work) = self.knowledge.closest_frontier(here, |_| true);
-        }
+        let (target, work) = if self.guide == Guide::Closest || stuck {
+            closest_of_all(&self.knowledge)
+        } else {
+            self.order
+        };
+        self.knowledge.set_target(target);
+        self.knowledge.look_at(work);
         let Limits {
             range,
             min_altitude,
@@ -89,7 +78,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
         } else {
             min_altitude.max(range / 2.0)
         };
-        self.target
+        target
             .and_then(|target| {
                 self.knowledge
                     .step_towards(Point::over(target, 0.0), cruise)
@@ -98,14 +87,47 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
     }
 }
 
+/// What becomes of robots that are more than there are groups.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounds {
+    /// They hover.
+    One,
+    /// They are matched with all groups once more.
+    Many,
+}
+
+impl Rounds {
+    fn most(self, robots: usize) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Many => robots,
+        }
+    }
+}
+
+/// The closest frontier of all, and the number of tiles and frontiers looked at, as the
+/// published method does it: its work grows with the map.
+fn closest_of_all<const TW: usize, const TH: usize>(
+    knowledge: &Knowledge<TW, TH>,
+) -> (Option<Cell>, u32) {
+    let (here, surface) = (knowledge.position(), knowledge.surface());
+    let distance = |cell: &Cell| here.plan_distance(Point::over(*cell, 0.0));
+    let cells = surface
+        .tiles()
+        .flat_map(|tile| Bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
+    let closest = cells.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let tiles = surface.tiles().count() as u32;
+    (closest, tiles + surface.frontiers())
+}
+
 /// The centralised greedy method: frontiers are grouped by leader clustering of
 /// radius `range`, the member nearest to a group's centroid stands for it, and robots
-/// and groups are matched by the smallest distance left. Robots left over start a
-/// second round. Also returns the number of distances computed.
+/// and groups are matched by the smallest distance left, in `rounds`. Also returns the number of distances computed.
 pub fn assign<const TW: usize, const TH: usize>(
     surface: &Surface<TW, TH>,
     robots: &[Point],
     range: f32,
+    rounds: Rounds,
 ) -> (Vec<Option<Cell>>, u32) {
     let mut work = 0;
     let mut groups: Vec<Vec<Point>> = Vec::new();
@@ -130,7 +152,7 @@ pub fn assign<const TW: usize, const TH: usize>(
         .collect();
     let mut targets = vec![None; robots.len()];
     let mut free: Vec<usize> = (0..robots.len()).collect();
-    while !free.is_empty() && !goals.is_empty() {
+    for _ in 0..rounds.most(robots.len()) {
         let mut open: Vec<Point> = goals.clone();
         while !free.is_empty() && !open.is_empty() {
             work += (free.len() * open.len()) as u32;

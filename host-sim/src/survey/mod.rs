@@ -1,24 +1,24 @@
 //! Fleets of flying robots over unknown surfaces.
 
-mod args;
 pub mod baselines;
 pub mod draw;
-mod figures;
+pub mod figures;
 mod mapped;
 pub mod octree;
 mod run;
 mod scenario;
 mod sensor;
+mod summary;
 mod terrain;
 mod terrain_source;
 mod trace;
+pub mod voxels;
 
-pub use args::{Summary, SurveyArgs};
-pub use figures::figures;
 pub use mapped::octree;
 pub use run::{Host, run, run_on};
-pub use scenario::{Kill, Planner, Scenario};
+pub use scenario::{DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario};
 pub use sensor::look;
+pub use summary::{RobotSummary, Summary};
 pub use terrain::Terrain;
 pub use terrain_source::TerrainSource;
-pub use trace::{Record, Safety, Trace};
+pub use trace::{Deed, Record, Safety, Trace};

@@ -5,17 +5,20 @@ use std::time::Instant;
 use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
+use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Action, Limits, Motion, SetupError, Status, Surveyor};
-use planner_core::{Extent, Point};
+use planner_core::{Extent, Point, RobotId};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::baselines::{Follower, Guide, assign};
+use super::baselines::{Follower, Guide, Rounds, assign};
 use super::scenario::{Planner, Scenario};
 use super::sensor::look;
 use super::terrain::Terrain;
-use super::trace::{Record, Safety, Trace};
+use super::trace::{Deed, Record, Safety, Trace};
+use crate::fleet::Sent;
+use crate::medium::MediumKind;
 
 /// Where the planners of a survey are.
 pub trait Host {
@@ -103,6 +106,8 @@ struct Robot<const T: usize> {
     alive: bool,
     awake: bool,
     stopped: bool,
+    /// Frames and bytes sent in this step.
+    sent: Sent,
 }
 
 fn compiled_on<const T: usize>(
@@ -146,6 +151,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
                     alive: true,
                     awake: true,
                     stopped: false,
+                    sent: Sent::default(),
                 })
             })
             .collect::<Result<_, SetupError>>()?;
@@ -156,7 +162,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             union: Box::new(Surface::new(extent)?),
             faults: ChaCha8Rng::seed_from_u64(scenario.seed),
             now: 0,
-            trace: Trace::new(extent, starts),
+            trace: Trace::new(terrain, scenario, starts),
         })
     }
 
@@ -180,7 +186,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             .iter()
             .any(|robot| robot.alive && !robot.stopped);
         self.trace.all_stopped = !going;
-        if !going || self.now >= self.scenario.max_steps {
+        if !going || self.now >= self.scenario.max_ticks {
             return false;
         }
         let orders = self.orders();
@@ -206,8 +212,43 @@ impl<'a, const T: usize> Simulation<'a, T> {
         }
     }
 
-    /// Everybody's position and news to everybody.
+    /// What everybody has to say to everybody, before anybody decides.
     fn share(&mut self) {
+        match self.scenario.medium {
+            MediumKind::Ideal => self.share_maps(),
+            MediumKind::Radio => {
+                let frames = usize::from(self.scenario.byte_budget) / MAX_LEN;
+                // One is left for after the flight.
+                for i in 0..self.robots.len() {
+                    self.robots[i].sent = Sent::default();
+                    if self.robots[i].awake {
+                        self.transmit(i, frames.saturating_sub(1).max(1));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Robot `i` sends as many frames as its budget allows, at most `most`.
+    fn transmit(&mut self, i: usize, most: usize) {
+        let mut frame = [0; MAX_LEN];
+        for _ in 0..most {
+            let Some(length) = self.robots[i].pilot.get_mut().transmit(&mut frame) else {
+                break;
+            };
+            self.robots[i].sent.frames += 1;
+            self.robots[i].sent.bytes += length as u32;
+            for to in (0..self.robots.len()).filter(|&to| to != i) {
+                if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                    let heard = self.robots[to].pilot.get_mut().receive(&frame[..length]);
+                    heard.expect("robots understand each other");
+                }
+            }
+        }
+    }
+
+    /// Everybody's position and news to everybody, however much it is.
+    fn share_maps(&mut self) {
         let messages: Vec<Option<(Status, Vec<Patch>)>> = self
             .robots
             .iter()
@@ -236,11 +277,13 @@ impl<'a, const T: usize> Simulation<'a, T> {
 
     /// The centre's targets, if there is a centre.
     fn orders(&self) -> (Vec<Option<planner_core::Cell>>, u32) {
-        if self.scenario.planner != Planner::Greedy {
-            return (Vec::new(), 0);
-        }
+        let rounds = match self.scenario.planner {
+            Planner::Greedy => Rounds::Many,
+            Planner::GreedyUnique => Rounds::One,
+            _ => return (Vec::new(), 0),
+        };
         let positions: Vec<Point> = self.robots.iter().map(|robot| robot.at).collect();
-        assign(&self.union, &positions, self.scenario.limits.range)
+        assign(&self.union, &positions, self.scenario.limits.range, rounds)
     }
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
@@ -257,50 +300,52 @@ impl<'a, const T: usize> Simulation<'a, T> {
             .decision_nanoseconds
             .push(began.elapsed().as_nanos() as u64);
         let from = self.robots[i].at;
-        let blocked = if let Action::Fly(to) = action {
-            let refused = self.collides(i, to);
-            if !refused {
+        let mut deed = match action {
+            Action::Fly(_) => Deed::Flew,
+            Action::Hover => Deed::Hovered,
+            Action::Stop(reason) => Deed::Stopped(reason),
+        };
+        if let Action::Fly(to) = action {
+            if self.collides(i, to) {
+                deed = Deed::Refused;
+            } else {
                 self.trace
                     .safety
                     .check_flight(self.terrain, &self.scenario.limits, from, to);
                 self.robots[i].at = to;
             }
-            let motion = if refused {
-                Motion::Blocked
-            } else {
-                Motion::Moved
+            let motion = match deed {
+                Deed::Refused => Motion::Blocked,
+                _ => Motion::Moved,
             };
-            self.robots[i].pilot.get_mut().report(motion);
-            refused
-        } else {
-            false
-        };
+            let at = self.robots[i].at;
+            self.robots[i].pilot.get_mut().report(motion, at);
+        }
         self.robots[i].stopped = matches!(action, Action::Stop(_));
-        let at = self.robots[i].at;
-        let pilot = self.robots[i].pilot.get();
-        let status = Status {
-            position: at,
-            ..pilot.status()
-        };
-        self.trace.records.push(Record {
-            step: self.now,
-            robot: i as u8,
-            at,
-            gain: pilot.knowledge().gain(),
-            target: status.target,
-            stop: if let Action::Stop(stop) = action {
-                Some(stop)
-            } else {
-                None
-            },
-            blocked,
-            work: pilot.work(),
-        });
-        for to in (0..self.robots.len()).filter(|&to| to != i) {
-            if self.robots[to].awake && !self.happens(self.scenario.loss) {
-                self.robots[to].pilot.get_mut().hear(i as u8, status);
+        let status = self.robots[i].pilot.get().status();
+        match self.scenario.medium {
+            MediumKind::Radio => self.transmit(i, 1),
+            MediumKind::Ideal => {
+                for to in (0..self.robots.len()).filter(|&to| to != i) {
+                    if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                        self.robots[to].pilot.get_mut().hear(i as u8, status);
+                    }
+                }
             }
         }
+        let robot = &self.robots[i];
+        let knowledge = robot.pilot.get().knowledge();
+        self.trace.records.push(Record {
+            tick: self.now,
+            robot: i as u8,
+            at: robot.at,
+            deed,
+            target: status.target,
+            gain: knowledge.gain(),
+            known: knowledge.surface().known_columns(),
+            work: robot.pilot.get().work(),
+            sent: robot.sent,
+        });
     }
 
     /// The flight controller's own sense of nearness: without radio a planner cannot
@@ -375,11 +420,17 @@ fn pilot<const T: usize>(
     id: u8,
 ) -> Result<Pilot<T>, SetupError> {
     let limits = scenario.limits;
+    let link = LinkConfig {
+        bytes_per_tick: scenario.byte_budget,
+        ..LinkConfig::new()
+    };
+    let follower = |guide| -> Result<Pilot<T>, SetupError> {
+        let follower = Follower::new(extent, limits, link, RobotId(id), guide)?;
+        Ok(Pilot::Follower(Box::new(follower)))
+    };
     Ok(match scenario.planner {
-        Planner::ClosestFrontier => {
-            Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Closest)?))
-        }
-        Planner::Greedy => Pilot::Follower(Box::new(Follower::new(extent, limits, Guide::Centre)?)),
+        Planner::ClosestFrontier => follower(Guide::Closest)?,
+        Planner::Greedy | Planner::GreedyUnique => follower(Guide::Centre)?,
         Planner::CoordinatedSurvey | Planner::CoordinatedCubic => {
             let choice = if scenario.planner == Planner::CoordinatedCubic {
                 Choice::Cubic
@@ -388,6 +439,7 @@ fn pilot<const T: usize>(
             };
             let config = coordinated_survey::Config {
                 limits,
+                link,
                 choice,
                 seed: scenario.seed,
             };
@@ -395,7 +447,10 @@ fn pilot<const T: usize>(
             Pilot::Other(host.surveyor(extent, limits, planner, id)?)
         }
         Planner::Fcao => {
-            let config = fcao::Config::new(limits, scenario.seed);
+            let config = fcao::Config {
+                link,
+                ..fcao::Config::new(limits, scenario.seed)
+            };
             let planner = SurveyorConfig::Fcao(config);
             Pilot::Other(host.surveyor(extent, limits, planner, id)?)
         }

@@ -2,6 +2,11 @@
 
 use planner_core::survey::Limits;
 
+use crate::medium::MediumKind;
+
+/// Five frames of 55 bytes in a step.
+pub const DEFAULT_BYTE_BUDGET: u16 = 275;
+
 /// How the robots decide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -14,8 +19,18 @@ pub enum Planner {
     Fcao,
     /// Every robot to the closest frontier.
     ClosestFrontier,
-    /// A centre assigns groups of frontiers to robots, nearest pair first.
+    /// A centre assigns groups of frontiers to robots, nearest pair first; robots left
+    /// over start a second round.
     Greedy,
+    /// The same without the second round, as published: no frontier has two robots.
+    GreedyUnique,
+}
+
+impl std::fmt::Display for Planner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let value = clap::ValueEnum::to_possible_value(self).expect("no value is skipped");
+        f.write_str(value.get_name())
+    }
 }
 
 /// A robot that dies.
@@ -53,6 +68,10 @@ pub struct Scenario {
     pub limits: Limits,
     /// Seed of planners and faults.
     pub seed: u64,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
+    /// Bytes that a robot may send by radio in a step on average.
+    pub byte_budget: u16,
     /// Share of the messages that are lost, each on its own.
     pub loss: f64,
     /// Share of a robot's steps that it sleeps through.
@@ -60,11 +79,12 @@ pub struct Scenario {
     /// Robots that die.
     pub kills: Vec<Kill>,
     /// Steps after which the run is given up.
-    pub max_steps: u32,
+    pub max_ticks: u32,
 }
 
 impl Scenario {
-    /// The set-up of the comparisons: range 8, step 2, no faults.
+    /// The set-up of the comparisons: range 8, step 2, no faults, and robots that tell
+    /// each other all news at once as in the paper.
     pub fn new(planner: Planner, robots: usize, seed: u64) -> Self {
         let limits = Limits {
             range: 8.0,
@@ -78,10 +98,12 @@ impl Scenario {
             robots,
             limits,
             seed,
+            medium: MediumKind::Ideal,
+            byte_budget: DEFAULT_BYTE_BUDGET,
             loss: 0.0,
             skip: 0.0,
             kills: Vec::new(),
-            max_steps: 20_000,
+            max_ticks: 20_000,
         }
     }
 }

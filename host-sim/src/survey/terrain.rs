@@ -8,6 +8,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// A height field; heights in cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Terrain {
+    name: String,
     extent: Extent,
     heights: Vec<Height>,
 }
@@ -16,7 +17,24 @@ impl Terrain {
     /// A terrain of `extent` with the height that `height` gives for each column.
     pub fn from_fn(extent: Extent, height: impl FnMut(Cell) -> Height) -> Self {
         let heights = cells(extent).map(height).collect();
-        Self { extent, heights }
+        Self {
+            name: "terrain".into(),
+            extent,
+            heights,
+        }
+    }
+
+    /// The same by another name.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// Eight Gaussian hills of equal width σ = 0.1·`side` and peaks of 4 to 14 cells
@@ -42,6 +60,7 @@ impl Terrain {
                 .sum();
             Height::from_cells(height as f32)
         })
+        .named(format!("gaussian-{seed}"))
     }
 
     /// A town: streets every 20 cells, on each block a building of 5 to 16 cells or a
@@ -89,6 +108,7 @@ impl Terrain {
                 (false, _) => Height(buildings[block]),
             }
         })
+        .named(format!("urban-{seed}"))
     }
 
     /// Size in columns.

@@ -1,4 +1,4 @@
-//! Terrains by name: `gaussian:SEED`, `urban:SEED`, or a file.
+//! Terrains by name: `gaussian:SEED`, `urban:SEED`, `town:SEED`, or a file.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -10,6 +10,7 @@ use planner_core::surface::Height;
 
 use super::octree::OcTree;
 use super::terrain::Terrain;
+use super::voxels::Scene;
 
 /// Where a terrain comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum TerrainSource {
     Gaussian(u64),
     /// A town drawn by a seed.
     Urban(u64),
+    /// A town of voxels drawn by a seed: see [`TerrainSource::scene`].
+    Town(u64),
     /// An image whose grey values are heights in quarters of a cell, or an OctoMap
     /// `.bt` file, of which the highest occupied voxel of each column counts.
     File(PathBuf),
@@ -34,6 +37,7 @@ impl FromStr for TerrainSource {
         };
         match text.split_once(':') {
             Some(("gaussian", digits)) => seed(digits).map(Self::Gaussian),
+            Some(("town", digits)) => seed(digits).map(Self::Town),
             Some(("urban", digits)) => seed(digits).map(Self::Urban),
             _ => Ok(Self::File(text.into())),
         }
@@ -41,10 +45,19 @@ impl FromStr for TerrainSource {
 }
 
 impl TerrainSource {
+    /// The scene, if this is one of voxels.
+    pub fn scene(&self, side: u16) -> Option<Scene> {
+        match self {
+            Self::Town(seed) => Some(Scene::town(*seed, side)),
+            _ => None,
+        }
+    }
+
     /// The terrain; a drawn one has `side`×`side` columns.
     pub fn load(&self, side: u16) -> Result<Terrain, String> {
         match self {
             Self::Gaussian(seed) => Ok(Terrain::gaussian(*seed, side)),
+            Self::Town(_) => Err("a town has several voxels in a column".into()),
             Self::Urban(seed) => Ok(Terrain::urban(*seed, side)),
             Self::File(path) => {
                 let read = if path.extension().is_some_and(|extension| extension == "bt") {
@@ -52,7 +65,9 @@ impl TerrainSource {
                 } else {
                     from_image(path)
                 };
-                read.map_err(|reason| format!("{}: {reason}", path.display()))
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                read.map(|terrain| terrain.named(name))
+                    .map_err(|reason| format!("{}: {reason}", path.display()))
             }
         }
     }

@@ -1,28 +1,84 @@
 //! What a run leaves behind.
+//!
+//! A trace file is text. Line 1 is a JSON object, the *header*: the scenario with the
+//! terrain's heights in quarters of a cell, the number of records and their digest.
+//! Line 2 names the columns; every further line is one record, [`COLUMNS`]. Numbers
+//! with a decimal point are the shortest that read back as the same `f32`.
+//!
+//! The digest is the first 16 hex digits of the SHA-256 of all records, each as 42
+//! bytes, little-endian: tick `u32`, robot `u8`, x, y, z `f32`, action `u8`, goal x, y
+//! `i16`, gain `f32`, known `u32`, work `u32`, frames `u32`, bytes `u32`.
+
+use std::fmt::Write as _;
+use std::io;
 
 use planner_core::surface::Column;
 use planner_core::survey::Stop;
 use planner_core::{Cell, Extent, Point};
+use serde_json::json;
+use sha2::{Digest, Sha256};
+
+use super::scenario::Scenario;
+use super::terrain::Terrain;
+use crate::fleet::Sent;
+
+/// The columns of a record.
+const COLUMNS: [&str; 13] = [
+    "tick", "robot", "x", "y", "z", "action", "goal_x", "goal_y", "gain", "known", "work",
+    "frames", "bytes",
+];
+
+/// What a robot did in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deed {
+    /// It flew.
+    Flew,
+    /// The flight controller refused its flight, for another robot's sake.
+    Refused,
+    /// It stayed.
+    Hovered,
+    /// It has stopped.
+    Stopped(Stop),
+}
 
 /// One decision of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Record {
-    /// In which step.
-    pub step: u32,
+    /// In which step, from 0.
+    pub tick: u32,
     /// Whose.
     pub robot: u8,
     /// Where the robot is after it.
     pub at: Point,
+    /// What became of it; in the file 0 flew, 1 refused, 2 hovered, 32 complete, 33
+    /// something was left unseen.
+    pub deed: Deed,
+    /// The frontier that it announces; in the file and the digest -1, -1 for none.
+    pub target: Option<Cell>,
     /// What the robot's last step added to its reward [Renzaglia2019 eq. 1].
     pub gain: f32,
-    /// The frontier that it announces.
-    pub target: Option<Cell>,
-    /// Whether it has stopped, and why.
-    pub stop: Option<Stop>,
-    /// Whether the flight controller refused the flight.
-    pub blocked: bool,
+    /// Columns on its map.
+    pub known: u32,
     /// Work of the decision, as the planner counts it.
     pub work: u32,
+    /// What it sent by radio in this step.
+    pub sent: Sent,
+}
+
+impl Record {
+    fn action(&self) -> u8 {
+        match self.deed {
+            Deed::Flew => 0,
+            Deed::Refused => 1,
+            Deed::Hovered => 2,
+            Deed::Stopped(Stop::Complete) => 32,
+            Deed::Stopped(Stop::Unseen { .. }) => 33,
+        }
+    }
+
+    fn goal(&self) -> Cell {
+        self.target.unwrap_or(Cell::new(-1, -1))
+    }
 }
 
 /// Steps at which something happened that never should.
@@ -38,9 +94,23 @@ pub struct Safety {
     pub step_violations: u32,
 }
 
+impl Safety {
+    /// All of them.
+    pub fn violations(&self) -> u32 {
+        self.altitude_violations
+            + self.obstacle_violations
+            + self.separation_violations
+            + self.step_violations
+    }
+}
+
 /// A whole run.
 #[derive(Clone, Debug)]
 pub struct Trace {
+    /// What was run.
+    pub scenario: Scenario,
+    /// Where.
+    pub terrain: Terrain,
     /// Size of the terrain.
     pub extent: Extent,
     /// Number of robots at the start.
@@ -62,9 +132,11 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub(super) fn new(extent: Extent, starts: Vec<Point>) -> Self {
+    pub(super) fn new(terrain: &Terrain, scenario: &Scenario, starts: Vec<Point>) -> Self {
         Self {
-            extent,
+            scenario: scenario.clone(),
+            terrain: terrain.clone(),
+            extent: terrain.extent(),
             robots: starts.len(),
             starts,
             records: Vec::new(),
@@ -77,7 +149,7 @@ impl Trace {
     }
 
     /// Steps until `share` of all columns had been seen.
-    pub fn steps_to(&self, share: f64) -> Option<u32> {
+    pub fn ticks_to(&self, share: f64) -> Option<u32> {
         let wanted = (share * f64::from(self.extent.cells())).ceil() as u32;
         self.seen
             .iter()
@@ -87,7 +159,7 @@ impl Trace {
 
     /// Whether all columns had been seen at the end.
     pub fn complete(&self) -> bool {
-        self.steps_to(1.0).is_some()
+        self.ticks_to(1.0).is_some()
     }
 
     /// The columns that anybody had seen after `steps` steps.
@@ -99,68 +171,131 @@ impl Trace {
     }
 
     /// Steps until the last living robot had stopped, if all have.
-    pub fn steps_to_stopped(&self) -> Option<u32> {
+    pub fn ticks_to_stopped(&self) -> Option<u32> {
         self.all_stopped.then(|| self.seen.len() as u32 - 1)
+    }
+
+    /// What `robot` did, step by step.
+    pub fn of(&self, robot: usize) -> impl Iterator<Item = &Record> {
+        self.records
+            .iter()
+            .filter(move |record| usize::from(record.robot) == robot)
     }
 
     /// Where `robot` was, from the start until after `steps` steps.
     pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
         let start = self.starts.get(robot).copied();
-        let records = self
-            .records
-            .iter()
-            .filter(|record| usize::from(record.robot) == robot);
+        let flown = self.of(robot).take_while(|record| record.tick < steps);
         start
             .into_iter()
-            .chain(
-                records
-                    .take_while(|record| record.step < steps)
-                    .map(|record| record.at),
-            )
+            .chain(flown.map(|record| record.at))
             .collect()
     }
 
-    /// One line for each decision, positions in cells.
-    pub fn write_csv(&self, mut to: impl std::io::Write) -> std::io::Result<()> {
-        writeln!(to, "step,robot,x,y,z,gain,work,refused,stopped")?;
+    /// Writes the trace in the format that this module documents.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
+        let Scenario { limits, kills, .. } = &self.scenario;
+        let kills: Vec<_> = kills.iter().map(|kill| (kill.robot, kill.step)).collect();
+        let starts: Vec<_> = self.starts.iter().map(|p| [p.x, p.y, p.z]).collect();
+        let heights: Vec<Vec<u8>> = (0..self.extent.height as i16)
+            .map(|y| {
+                let row = (0..self.extent.width as i16).map(|x| Cell::new(x, y));
+                row.map(|cell| self.terrain.height(cell).unwrap_or_default().0)
+                    .collect()
+            })
+            .collect();
+        let header = json!({
+            "format": "host-sim survey trace",
+            "version": 1,
+            "digest": self.digest(),
+            "records": self.records.len(),
+            "planner": self.scenario.planner,
+            "range": limits.range,
+            "step": limits.step,
+            "min_altitude": limits.min_altitude,
+            "ceiling": limits.ceiling,
+            "separation": limits.separation,
+            "medium": self.scenario.medium,
+            "byte_budget": self.scenario.byte_budget,
+            "loss": self.scenario.loss,
+            "skip": self.scenario.skip,
+            "seed": self.scenario.seed,
+            "max_ticks": self.scenario.max_ticks,
+            "starts": starts,
+            "deaths": kills,
+            "world": { "name": self.terrain.name(), "heights": heights },
+        });
+        writeln!(to, "{header}\n{}", COLUMNS.join(","))?;
         for record in &self.records {
-            let Record {
-                step,
-                robot,
-                at,
-                gain,
-                work,
-                blocked,
-                stop,
-                ..
-            } = record;
-            let stopped = stop.is_some();
+            let Record { at, sent, .. } = record;
+            let goal = record.goal();
             writeln!(
                 to,
-                "{step},{robot},{},{},{},{gain},{work},{blocked},{stopped}",
-                at.x, at.y, at.z
+                "{},{},{},{},{},{},{},{},{},{},{},{},{}",
+                record.tick,
+                record.robot,
+                at.x,
+                at.y,
+                at.z,
+                record.action(),
+                goal.x,
+                goal.y,
+                record.gain,
+                record.known,
+                record.work,
+                sent.frames,
+                sent.bytes
             )?;
         }
         Ok(())
     }
 
-    /// A number that two runs share only if every decision is the same, bit for bit
-    /// (FNV-1a).
-    pub fn digest(&self) -> u64 {
-        let mut hash = 0xcbf2_9ce4_8422_2325u64;
-        let mut eat = |word: u32| {
-            for byte in word.to_le_bytes() {
-                hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-            }
-        };
-        for record in &self.records {
-            eat(record.step);
-            eat(u32::from(record.robot));
-            for coordinate in [record.at.x, record.at.y, record.at.z] {
-                eat(coordinate.to_bits());
-            }
-            eat(u32::from(record.stop.is_some()) | u32::from(record.blocked) << 1);
+    /// Writes `tick,seen_cells,seen_share` line by line; the share is of all columns, 0
+    /// to 1.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write_coverage(&self, mut to: impl io::Write) -> io::Result<()> {
+        writeln!(to, "tick,seen_cells,seen_share")?;
+        let all = f64::from(self.extent.cells());
+        for (tick, &seen) in self.seen.iter().enumerate() {
+            writeln!(to, "{tick},{seen},{:.6}", f64::from(seen) / all)?;
         }
-        hash
+        Ok(())
+    }
+
+    /// 16 hex digits that differ if any record does.
+    pub fn digest(&self) -> String {
+        let mut sha = Sha256::new();
+        for record in &self.records {
+            sha.update(record.tick.to_le_bytes());
+            sha.update([record.robot]);
+            for coordinate in [record.at.x, record.at.y, record.at.z] {
+                sha.update(coordinate.to_le_bytes());
+            }
+            sha.update([record.action()]);
+            sha.update(record.goal().x.to_le_bytes());
+            sha.update(record.goal().y.to_le_bytes());
+            sha.update(record.gain.to_le_bytes());
+            for number in [
+                record.known,
+                record.work,
+                record.sent.frames,
+                record.sent.bytes,
+            ] {
+                sha.update(number.to_le_bytes());
+            }
+        }
+        let digest = sha.finalize();
+        digest
+            .iter()
+            .take(8)
+            .fold(String::new(), |mut digits, byte| {
+                write!(digits, "{byte:02x}").expect("a String takes everything");
+                digits
+            })
     }
 }

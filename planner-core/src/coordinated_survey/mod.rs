@@ -15,11 +15,14 @@ mod vicinity;
 
 use crate::cell::{Cell, Extent};
 use crate::fcao::History;
+use crate::planner::RobotId;
 use crate::point::Point;
+use crate::radio::LinkConfig;
 use crate::rng::Rng;
-use crate::survey::{
-    Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Status, Stop, Surveyor,
-};
+use crate::surface::Tile;
+use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use frontier::SHORTLIST;
+use heapless::Vec;
 
 /// Measurements that the local model remembers.
 const HISTORY: usize = 8;
@@ -49,6 +52,8 @@ const NEAR_PATIENCE: u8 = 6;
 pub struct Config {
     /// The fleet's physics.
     pub limits: Limits,
+    /// How the robots use the radio.
+    pub link: LinkConfig,
     /// Seed of the fleet's random headings.
     pub seed: u64,
     /// How the local step is chosen.
@@ -63,13 +68,14 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     rng: Rng,
     history: History<HISTORY>,
     rescue: Rescue<TW, TH>,
-    target: Option<Cell>,
-    stopped: bool,
+    /// The best tiles with frontiers of the last time, and where the look at all of
+    /// them in turn stands.
+    shortlist: Vec<Tile, SHORTLIST>,
+    turn: Tile,
     /// Steps near a target since the last gain.
     stuck: u8,
     /// Whether the last step was a local one.
     local: bool,
-    work: u32,
 }
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
@@ -79,18 +85,18 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         Self {
             config: Config {
                 limits: Limits::NONE,
+                link: LinkConfig::vacant(),
                 seed: 0,
                 choice: Choice::Map,
             },
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
             history: History::new(),
-            rescue: Rescue::new(),
-            target: None,
-            stopped: false,
+            rescue: Rescue::vacant(),
+            shortlist: Vec::new(),
+            turn: Tile { x: 0, y: 0 },
             stuck: 0,
             local: false,
-            work: 0,
         }
     }
 
@@ -103,16 +109,16 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     /// Starts anew, in place; unchanged after an error.
     pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
-        self.knowledge.reset(extent, config.limits)?;
+        self.knowledge
+            .reset(extent, config.limits, config.link, RobotId(id))?;
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id));
         self.history = History::new();
         self.rescue.reset();
-        self.target = None;
-        self.stopped = false;
+        self.shortlist.clear();
+        self.turn = Tile { x: 0, y: 0 };
         self.stuck = 0;
         self.local = false;
-        self.work = 0;
         Ok(())
     }
 
@@ -126,15 +132,11 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         min_altitude.max(CRUISE * range)
     }
 
-    fn look_at(&mut self, number: u32) {
-        self.work = self.work.saturating_add(number);
-    }
-
     /// Whether the robot has been near its target for a while and gained nothing: it
     /// hides, behind an edge or on a tower.
     fn is_stuck(&mut self, gain: f32) -> bool {
         let here = self.knowledge.position();
-        let near = self.target.is_none_or(|target| {
+        let near = self.knowledge.target().is_none_or(|target| {
             here.plan_distance(Point::over(target, 0.0)) < 0.5 * self.config.limits.range
         });
         if gain > 0.0 {
@@ -146,8 +148,8 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     }
 
     fn fly_to(&mut self, target: Option<Cell>) -> Option<Action> {
-        self.target = target;
-        self.look_at(29);
+        self.knowledge.set_target(target);
+        self.knowledge.look_at(29);
         let goal = Point::over(target?, 0.0);
         self.knowledge
             .step_towards(goal, self.cruise())
@@ -179,38 +181,18 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
         &mut self.knowledge
     }
 
-    fn status(&self) -> Status {
-        Status {
-            position: self.knowledge.position(),
-            target: self.target,
-            stopped: self.stopped,
-        }
-    }
-
-    fn work(&self) -> u32 {
-        self.work
-    }
-
     fn tick(&mut self) -> Action {
-        self.work = 0;
-        let gain = self.knowledge.settle();
+        if let Some(complete) = self.knowledge.begin_tick() {
+            return complete;
+        }
+        let gain = self.knowledge.gain();
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let surface = self.knowledge.surface();
-        self.stopped = surface.known_columns() > 0 && surface.frontiers() == 0;
-        if self.stopped {
-            self.target = None;
-            return Action::Stop(Stop::Complete);
-        }
         if self.knowledge.take_blocked() {
             return self.sidestep();
         }
         if self.is_stuck(gain) || self.knowledge.idle() >= PATIENCE {
-            let action = self.rescue.tick(&self.knowledge);
-            self.look_at(self.rescue.work);
-            self.target = self.rescue.target();
-            self.stopped = matches!(action, Action::Stop(_));
-            return action;
+            return self.rescue.tick(&mut self.knowledge);
         }
         if let Some(pocket) = self.nearest_pocket()
             && let Some(action) = self.fly_to(Some(pocket))
@@ -218,7 +200,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
             return action;
         }
         if let Some(to) = self.best_swath(gain) {
-            self.target = None;
+            self.knowledge.set_target(None);
             return Action::Fly(to);
         }
         let frontier = self.own_frontier();

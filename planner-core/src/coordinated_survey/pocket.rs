@@ -59,7 +59,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 }
             }
         }
-        self.look_at(work);
+        self.knowledge.look_at(work);
         best.map(|(_, cell)| cell)
     }
 

@@ -41,6 +41,9 @@ const RIDGE: f32 = 1e-3;
 /// Random candidates.
 const CANDIDATES: u8 = 48;
 
+/// Rivals whose part of the surface is left to them.
+const NEIGHBOURS: usize = 6;
+
 /// Rows of the fit: the past and the probes.
 const ROWS: usize = HISTORY + HEADINGS as usize;
 
@@ -72,13 +75,15 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 });
             }
         }
-        self.look_at(u32::from(HEADINGS) * self.disc_rows());
+        let rows = u32::from(HEADINGS) * self.disc_rows();
+        self.knowledge.look_at(rows);
         if !probes.iter().any(|probe| probe.value >= LEAST) {
             return None;
         }
         let to = match self.config.choice {
             Choice::Map => self.best_candidate(|robot, heading, _| {
-                robot.look_at(robot.disc_rows());
+                let rows = robot.disc_rows();
+                robot.knowledge.look_at(rows);
                 robot.shown_along(vicinity, heading)
             }),
             Choice::Cubic => {
@@ -90,16 +95,27 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         to
     }
 
-    /// The vicinity without what is nearer to others.
+    /// The vicinity without what is nearer to others; of many, to the nearest six: the
+    /// rest are behind them, and the work stays level in a large fleet.
     #[inline(never)] // what it keeps on the stack goes with it
     fn own_vicinity(&mut self) -> Vicinity {
         let here = self.knowledge.position();
         let mut vicinity = Vicinity::new(self.knowledge.surface(), here);
+        let mut nearest: Vec<(f32, Point), NEIGHBOURS> = Vec::new();
         for peer in self.knowledge.rivals() {
-            vicinity.leave_to(peer.status.position, here);
+            let at = peer.status.position;
+            let distance = here.plan_distance(at);
+            let place = nearest.iter().take_while(|near| near.0 <= distance).count();
+            if nearest.is_full() && place < NEIGHBOURS {
+                nearest.pop();
+            }
+            // Beyond the last place there is no room.
+            let _ = nearest.insert(place, (distance, at));
         }
-        let rivals = self.knowledge.rivals().count() as u32;
-        self.look_at(512 + 64 * rivals);
+        for &(_, at) in &nearest {
+            vicinity.leave_to(at, here);
+        }
+        self.knowledge.look_at(512 + 64 * nearest.len() as u32);
         vicinity
     }
 
@@ -116,7 +132,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         {
             let _ = rows.push(sample);
         }
-        self.look_at((ROWS * ROWS) as u32);
+        self.knowledge.look_at((ROWS * ROWS) as u32);
         let frame = Frame {
             origin: self.knowledge.position(),
             scale: 1.0 / (step * math::sqrt(6.0)),
@@ -141,7 +157,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 best = Some((value, to));
             }
         }
-        self.look_at(u32::from(CANDIDATES));
+        self.knowledge.look_at(u32::from(CANDIDATES));
         best.map(|(_, to)| to)
     }
 

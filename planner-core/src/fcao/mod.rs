@@ -8,12 +8,12 @@ mod history;
 pub(crate) use history::History;
 
 use crate::cao::{Degree, Frame, Model};
-use crate::cell::{Cell, Extent};
+use crate::cell::Extent;
+use crate::planner::RobotId;
 use crate::point::Point;
+use crate::radio::LinkConfig;
 use crate::rng::Rng;
-use crate::survey::{
-    Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Status, Stop, Surveyor,
-};
+use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -31,6 +31,8 @@ const FEWEST: usize = 4;
 pub struct Config {
     /// The fleet's physics.
     pub limits: Limits,
+    /// How the robots use the radio.
+    pub link: LinkConfig,
     /// Degree of the local model; cubic as published.
     pub degree: Degree,
     /// Number M of random candidates in each step.
@@ -44,6 +46,7 @@ impl Config {
     pub const fn new(limits: Limits, seed: u64) -> Self {
         Self {
             limits,
+            link: LinkConfig::new(),
             degree: Degree::Cubic,
             candidates: 100,
             seed,
@@ -60,10 +63,6 @@ pub struct Fcao<const TW: usize, const TH: usize, const H: usize = 8> {
     rng: Rng,
     history: History<H>,
     rescue: Rescue<TW, TH>,
-    /// The frontier that the robot flies to; `None` while it optimises locally.
-    target: Option<Cell>,
-    stopped: bool,
-    work: u32,
 }
 
 impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
@@ -73,6 +72,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         Self {
             config: Config {
                 limits: Limits::NONE,
+                link: LinkConfig::vacant(),
                 degree: Degree::Linear,
                 candidates: 0,
                 seed: 0,
@@ -80,10 +80,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
             history: History::new(),
-            rescue: Rescue::new(),
-            target: None,
-            stopped: false,
-            work: 0,
+            rescue: Rescue::vacant(),
         }
     }
 
@@ -96,14 +93,12 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     /// Starts anew, in place; unchanged after an error.
     pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
-        self.knowledge.reset(extent, config.limits)?;
+        self.knowledge
+            .reset(extent, config.limits, config.link, RobotId(id))?;
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id));
         self.history = History::new();
         self.rescue.reset();
-        self.target = None;
-        self.stopped = false;
-        self.work = 0;
         Ok(())
     }
 
@@ -145,7 +140,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     // reach, J less its mean.
     #[inline(never)] // what it keeps on the stack goes with it
     fn fit(&mut self, here: Point) -> Option<Model> {
-        self.work = self.work.saturating_add((H * H) as u32);
+        self.knowledge.look_at((H * H) as u32);
         let reach = self.history.reach(here).max(self.config.limits.step);
         let frame = Frame {
             origin: here,
@@ -162,7 +157,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     /// A random point of the sphere of one step [Renzaglia2019 eq. 6].
     fn candidate(&mut self, here: Point) -> Point {
-        self.work = self.work.saturating_add(1);
+        self.knowledge.look_at(1);
         let (x, y, z) = self.rng.direction();
         let step = self.config.limits.step;
         here.offset(step * x, step * y, step * z)
@@ -192,23 +187,20 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     /// Flies to the closest frontier [Renzaglia2019 §4.2]. Reading: low enough that
     /// it comes into range, and another one as soon as this one is none any more.
     fn fly_to_frontier(&mut self) -> Action {
-        let here = self.knowledge.position();
-        let surface = self.knowledge.surface();
-        if !self
-            .target
-            .is_some_and(|target| surface.is_frontier(target))
-        {
-            let (target, work) = self.knowledge.closest_frontier(here, |_| true);
-            self.target = target;
-            self.work = self.work.saturating_add(work);
+        let is_frontier = |cell| self.knowledge.surface().is_frontier(cell);
+        if !self.knowledge.target().is_some_and(is_frontier) {
+            let (target, work) = self.knowledge.closest_frontier();
+            self.knowledge.set_target(target);
+            self.knowledge.look_at(work);
         }
         let Limits {
             range,
             min_altitude,
             ..
         } = self.config.limits;
-        self.work = self.work.saturating_add(29);
-        self.target
+        self.knowledge.look_at(29);
+        self.knowledge
+            .target()
             .and_then(|target| {
                 let goal = Point::over(target, 0.0);
                 self.knowledge
@@ -227,41 +219,22 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
         &mut self.knowledge
     }
 
-    fn status(&self) -> Status {
-        Status {
-            position: self.knowledge.position(),
-            target: self.target,
-            stopped: self.stopped,
-        }
-    }
-
-    fn work(&self) -> u32 {
-        self.work
-    }
-
     // [Renzaglia2019 Algorithm 1]
     fn tick(&mut self) -> Action {
-        self.work = 0;
-        let gain = self.knowledge.settle();
+        if let Some(complete) = self.knowledge.begin_tick() {
+            return complete;
+        }
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let surface = self.knowledge.surface();
-        self.stopped = surface.known_columns() > 0 && surface.frontiers() == 0;
-        if self.stopped {
-            return Action::Stop(Stop::Complete);
-        }
         if self.knowledge.take_blocked() {
             return self.wander();
         }
         if self.knowledge.idle() >= PATIENCE {
-            let action = self.rescue.tick(&self.knowledge);
-            self.work = self.work.saturating_add(self.rescue.work);
-            self.target = self.rescue.target();
-            self.stopped = matches!(action, Action::Stop(_));
-            return action;
+            return self.rescue.tick(&mut self.knowledge);
         }
-        if gain > self.least_gain() {
-            self.target = None;
+        if self.knowledge.gain() > self.least_gain() {
+            // Without a target: the robot optimises locally.
+            self.knowledge.set_target(None);
             if let Some(action) = self.optimise() {
                 return action;
             }

@@ -18,7 +18,7 @@ pub const MAX_LEN: usize = 55;
 pub const MAX_TILES: usize = 2;
 
 /// The format that this code writes, and the only one that it reads.
-const VERSION: u8 = 1;
+pub(super) const VERSION: u8 = 1;
 /// The kind of frame that carries tiles of an occupancy grid.
 const OCCUPANCY: u8 = 1;
 
@@ -27,14 +27,14 @@ const HEADER: usize = 14;
 /// Bytes of a tile: column, row, two bits a cell.
 const RECORD: usize = 18;
 /// Bytes of the CRC.
-const CRC: usize = 2;
+pub(super) const CRC: usize = 2;
 /// Bytes of the keyed tag, which takes the place of the CRC.
-const TAG: usize = 4;
+pub(super) const TAG: usize = 4;
 
 const _: () = assert!(HEADER + MAX_TILES * RECORD + TAG <= MAX_LEN);
 const _: () = assert!(HEADER + MAX_TILES * RECORD + CRC <= MAX_LEN);
 
-const CHECK: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_SDLC);
+pub(super) const CHECK: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_SDLC);
 
 /// A tile of a map and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,10 +106,7 @@ impl fmt::Display for FrameError {
                 f,
                 "the frame is of version {version}, this planner reads version {VERSION}"
             ),
-            Self::Kind(kind) => write!(
-                f,
-                "the frame is of kind {kind}, this planner reads kind {OCCUPANCY}"
-            ),
+            Self::Kind(kind) => write!(f, "this planner does not read frames of kind {kind}"),
             Self::Check => write!(f, "the frame's check bytes do not match"),
             Self::OtherGrid(grid) => write!(
                 f,
@@ -130,7 +127,7 @@ impl Frame {
     ///
     /// Cells must lie on the grid: coordinates are written with 12 bits.
     pub fn encode(&self, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
-        let mut writer = Writer { buffer, length: 0 };
+        let mut writer = Writer::new(buffer);
         writer.put(&[VERSION, OCCUPANCY]);
         writer.put(&self.grid.0.to_le_bytes());
         writer.put(&[self.sender.0]);
@@ -147,17 +144,7 @@ impl Frame {
             writer.put(&[record.at.x, record.at.y]);
             writer.put(&cell_codes(record.tile).to_le_bytes());
         }
-        match key {
-            Some(key) => {
-                let tag = key.tag(writer.written());
-                writer.put(&tag);
-            }
-            None => {
-                let check = CHECK.checksum(writer.written());
-                writer.put(&check.to_le_bytes());
-            }
-        }
-        writer.length
+        writer.finish(key)
     }
 
     /// Reads a frame about `grid`, a grid of `extent` cells. Every field is looked
@@ -259,13 +246,32 @@ impl Frame {
 
 /// Writes into the front of a buffer; what does not fit is left out, which the
 /// assertions above rule out.
-struct Writer<'a> {
+pub(super) struct Writer<'a> {
     buffer: &'a mut [u8; MAX_LEN],
     length: usize,
 }
 
-impl Writer<'_> {
-    fn put(&mut self, bytes: &[u8]) {
+impl<'a> Writer<'a> {
+    pub(super) const fn new(buffer: &'a mut [u8; MAX_LEN]) -> Self {
+        Self { buffer, length: 0 }
+    }
+
+    /// Writes the check bytes behind all the rest; returns the length of the frame.
+    pub(super) fn finish(mut self, key: Option<&Key>) -> usize {
+        match key {
+            Some(key) => {
+                let tag = key.tag(self.written());
+                self.put(&tag);
+            }
+            None => {
+                let check = CHECK.checksum(self.written());
+                self.put(&check.to_le_bytes());
+            }
+        }
+        self.length
+    }
+
+    pub(super) fn put(&mut self, bytes: &[u8]) {
         let end = self.length + bytes.len();
         if let Some(place) = self.buffer.get_mut(self.length..end) {
             place.copy_from_slice(bytes);
@@ -279,7 +285,7 @@ impl Writer<'_> {
 }
 
 /// A cell in three bytes: 12 bits of `x`, then 12 bits of `y`, low bits first.
-const fn packed(cell: Cell) -> [u8; 3] {
+pub(super) const fn packed(cell: Cell) -> [u8; 3] {
     let (x, y) = (cell.x as u16, cell.y as u16);
     [
         x as u8,
@@ -288,7 +294,7 @@ const fn packed(cell: Cell) -> [u8; 3] {
     ]
 }
 
-const fn unpacked([a, b, c]: [u8; 3]) -> Cell {
+pub(super) const fn unpacked([a, b, c]: [u8; 3]) -> Cell {
     Cell::new(
         (a as u16 | (b as u16 & 15) << 8) as i16,
         (b as u16 >> 4 | (c as u16) << 4) as i16,

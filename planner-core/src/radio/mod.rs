@@ -8,9 +8,12 @@
 mod frame;
 mod link;
 mod outbox;
+mod surface_frame;
 
 pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 pub use link::{GridId, Heard, Key, Link, LinkConfig};
+pub(crate) use surface_frame::position_on_wire;
+pub use surface_frame::{HeightRecord, SurfaceFrame};
 
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::point::Point;
 
 type Map = Surface<3, 2>;
 const EXTENT: Extent = Extent::new(21, 14);
@@ -52,6 +53,40 @@ proptest! {
         prop_assert_eq!(map.known_columns() as usize, table.iter().flatten().flatten().count());
         let by_tile: u32 = map.tiles().map(|tile| u32::from(map.frontiers_in(tile))).sum();
         prop_assert_eq!(by_tile, frontiers);
+    }
+
+    /// Against a look at every tile.
+    #[test]
+    fn the_nearest_tiles_are_those_of_a_scan(
+        columns in prop::collection::vec(column(), 0..40),
+        x in -5.0f32..30.0,
+        y in -5.0f32..20.0,
+    ) {
+        let mut map = Map::new(EXTENT).unwrap();
+        for &column in &columns {
+            map.learn(column);
+        }
+        let from = Point::new(x, y, 0.0);
+        let mut distances: Vec<f32> = map
+            .tiles()
+            .filter(|&tile| map.frontiers_in(tile) > 0)
+            .map(|tile| distance_to_tile(from, tile))
+            .collect();
+        distances.sort_by(f32::total_cmp);
+        distances.truncate(3);
+        let (found, _) = map.nearest_frontier_tiles::<3>(from);
+        let found: Vec<f32> = found.iter().map(|&tile| distance_to_tile(from, tile)).collect();
+        prop_assert_eq!(found, distances);
+
+        let all = map.tiles().filter(|&tile| map.frontiers_in(tile) > 0).count();
+        let mut round = std::collections::BTreeSet::new();
+        let mut tile = Tile { x: 1, y: 1 };
+        for _ in 0..all {
+            tile = map.next_frontier_tile(tile).unwrap();
+            round.insert(tile);
+        }
+        prop_assert_eq!(round.len(), all);
+        prop_assert_eq!(map.next_frontier_tile(tile).is_some(), all > 0);
     }
 
     /// Any order and any repetition of the same patches gives the same map.

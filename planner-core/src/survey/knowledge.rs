@@ -2,12 +2,18 @@
 
 use core::fmt;
 
+use super::link::Link;
 use super::news::{MAX_RANGE, News, REPEATS};
 use super::peers::{Peer, Peers};
-use super::{Limits, Motion, Status};
+use super::{Action, Limits, Motion, Status, Stop};
 use crate::cell::{Cell, Extent};
+use crate::planner::RobotId;
 use crate::point::Point;
-use crate::surface::{Column, Patch, Surface, Tile, TooLarge};
+use crate::radio::{FrameError, HeightRecord, LinkConfig, MAX_LEN};
+use crate::surface::{Bits, Column, Patch, Surface, Tile, TooLarge, distance_to_tile};
+
+/// Unknown tiles that the turn passes over in a step.
+const TURN_STRIDE: u8 = 8;
 
 /// A planner cannot be set up like this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +65,11 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     reward: f32,
     idle: u16,
     blocked: bool,
+    link: Link,
+    /// Where the planner said that it goes.
+    pub(super) target: Option<Cell>,
+    pub(super) stopped: bool,
+    work: u32,
 }
 
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
@@ -75,18 +86,35 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             reward: 0.0,
             idle: 0,
             blocked: false,
+            link: Link::vacant(),
+            target: None,
+            stopped: false,
+            work: 0,
         }
     }
 
     /// A robot that knows nothing of a surface of `extent` columns.
-    pub fn new(extent: Extent, limits: Limits) -> Result<Self, SetupError> {
+    ///
+    /// `id` is the robot's name on the radio.
+    pub fn new(
+        extent: Extent,
+        limits: Limits,
+        link: LinkConfig,
+        id: RobotId,
+    ) -> Result<Self, SetupError> {
         let mut knowledge = Self::vacant();
-        knowledge.reset(extent, limits)?;
+        knowledge.reset(extent, limits, link, id)?;
         Ok(knowledge)
     }
 
     /// Starts anew, in place; unchanged after an error.
-    pub fn reset(&mut self, extent: Extent, limits: Limits) -> Result<(), SetupError> {
+    pub fn reset(
+        &mut self,
+        extent: Extent,
+        limits: Limits,
+        link: LinkConfig,
+        id: RobotId,
+    ) -> Result<(), SetupError> {
         if !(limits.range > 0.0 && limits.range <= MAX_RANGE) {
             return Err(SetupError::Range);
         }
@@ -108,6 +136,10 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.reward = 0.0;
         self.idle = 0;
         self.blocked = false;
+        self.link = Link::new(link, id, extent);
+        self.target = None;
+        self.stopped = false;
+        self.work = 0;
         Ok(())
     }
 
@@ -141,6 +173,35 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.idle
     }
 
+    /// Where the robot said last that it goes.
+    pub const fn target(&self) -> Option<Cell> {
+        self.target
+    }
+
+    /// Announces where the robot goes.
+    pub fn set_target(&mut self, target: Option<Cell>) {
+        self.target = target;
+    }
+
+    /// Cells, tiles, words, candidates and samples looked at since the tick began.
+    pub const fn work(&self) -> u32 {
+        self.work
+    }
+
+    /// Counts `number` more of them.
+    pub fn look_at(&mut self, number: u32) {
+        self.work = self.work.saturating_add(number);
+    }
+
+    /// What the robot tells the others about itself.
+    pub const fn status(&self) -> Status {
+        Status {
+            position: self.position,
+            target: self.target,
+            stopped: self.stopped,
+        }
+    }
+
     /// The other robots as last heard.
     pub fn peers(&self) -> impl Iterator<Item = &Peer> {
         self.peers.iter()
@@ -162,6 +223,69 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             })
         });
         news.chain([self.surface.patch(self.turn, !0)])
+    }
+
+    /// Writes the next frame and returns its length, or `None` while the budget does
+    /// not allow one: what the robot saw first in its last four steps, newest first,
+    /// and every fourth time, or when there is no such thing left, half a tile of all
+    /// that it knows, another one each time.
+    ///
+    /// Cost: five tiles.
+    pub(super) fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let mut frame = self.link.begin_frame(self.status())?;
+        let mut taken = 0;
+        while let Some(record) = self.next_record(taken) {
+            taken += record.length();
+            if frame.records.push(record).is_err() {
+                break;
+            }
+        }
+        Some(self.link.send(&frame, buffer))
+    }
+
+    /// The next record that fits beside `taken` bytes of others.
+    fn next_record(&mut self, taken: usize) -> Option<HeightRecord> {
+        if !self.link.is_turn()
+            && let Some((tile, cells, fresh)) = self.news.next_unsent()
+        {
+            let patch = Patch {
+                fresh,
+                ..self.surface.patch(tile, cells)
+            };
+            let south = cells & 0xffff_ffff == 0;
+            let record = HeightRecord::of(&patch, south, cells, taken)?;
+            self.news.mark_sent(tile, record.tile_cells());
+            return Some(record);
+        }
+        for _ in 0..TURN_STRIDE {
+            let (tile, cells) = self.link.turn();
+            let patch = self.surface.patch(tile, cells);
+            if patch.cells == 0 {
+                self.link.pass(self.surface.tile_after(tile));
+                continue;
+            }
+            let south = patch.cells & 0xffff_ffff == 0;
+            let record = HeightRecord::of(&patch, south, cells, taken)?;
+            self.link.mark_sent(record.tile_cells());
+            return Some(record);
+        }
+        None
+    }
+
+    /// Reads a frame and joins its heights into the map; says which columns it
+    /// brought.
+    ///
+    /// # Errors
+    /// See [`FrameError`]; nothing has changed then.
+    pub(super) fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
+        let frame = self.link.read(bytes, self.surface.extent())?;
+        let before = self.surface.known_columns();
+        for record in &frame.records {
+            self.merge(&record.patch());
+        }
+        self.peers
+            .hear_frame(frame.sender.0, frame.status(), frame.sequence);
+        Ok(self.surface.known_columns() - before)
     }
 
     pub(super) fn observe(&mut self, at: Point, columns: &[Column]) {
@@ -189,8 +313,11 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.surface.merge(patch);
     }
 
-    pub(super) fn report(&mut self, motion: Motion) {
+    pub(super) fn report(&mut self, motion: Motion, at: Point) {
         self.blocked = motion == Motion::Blocked;
+        if at.is_finite() {
+            self.position = at;
+        }
     }
 
     /// Whether the last flight was refused; asking clears it.
@@ -198,10 +325,12 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         core::mem::take(&mut self.blocked)
     }
 
-    /// Counts the step's gain. Call it once, at the head of every tick.
+    /// The head of every tick: counts the step's gain, and stops the robot if nothing
+    /// is left to see.
     ///
-    /// Cost: the columns seen first in this step, and the tiles of the map.
-    pub fn settle(&mut self) -> f32 {
+    /// Cost: the columns seen first in this step.
+    pub fn begin_tick(&mut self) -> Option<Action> {
+        self.work = 0;
         self.gain = self.news.reward();
         self.reward += self.gain;
         self.idle = if self.gain > 0.0 {
@@ -210,60 +339,57 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             self.idle.saturating_add(1)
         };
         self.peers.age();
-        self.turn = self
-            .surface
-            .tiles()
-            .skip_while(|&tile| tile != self.turn)
-            .skip(1)
-            .chain(self.surface.tiles())
-            .find(|&tile| self.surface.known(tile) != 0)
-            .unwrap_or(self.turn);
-        self.gain
+        self.turn = self.next_turn();
+        self.link.tick();
+        let complete = self.surface.known_columns() > 0 && self.surface.frontiers() == 0;
+        self.stopped = false;
+        complete.then(|| self.stop(Stop::Complete))
     }
 
-    /// The frontier nearest to `from` on the ground plan for which `wanted` holds,
-    /// and the number of tiles and cells looked at.
-    ///
-    /// Cost: every tile once, and the frontiers of the tiles that may hold a nearer
-    /// one than found so far.
-    // [Renzaglia2019 Algorithm 1, ClosestFrontier]
-    pub fn closest_frontier(
-        &self,
-        from: Point,
-        mut wanted: impl FnMut(Cell) -> bool,
-    ) -> (Option<Cell>, u32) {
-        let mut best: Option<(f32, Cell)> = None;
-        let mut work = 0u32;
-        for tile in self.surface.tiles() {
-            work = work.saturating_add(1);
-            if self.surface.frontiers_in(tile) == 0
-                || best.is_some_and(|(distance, _)| distance_to_tile(from, tile) >= distance)
-            {
-                continue;
+    /// Stops the robot for `reason`.
+    pub fn stop(&mut self, reason: Stop) -> Action {
+        self.target = None;
+        self.stopped = true;
+        Action::Stop(reason)
+    }
+
+    /// The tile to tell next: the first of a few of which something is known.
+    fn next_turn(&self) -> Tile {
+        let mut tile = self.turn;
+        for _ in 0..TURN_STRIDE {
+            tile = self.surface.tile_after(tile);
+            if self.surface.known(tile) != 0 {
+                break;
             }
-            for bit in crate::surface::Bits(self.surface.frontier_cells(tile)) {
-                work = work.saturating_add(1);
+        }
+        tile
+    }
+
+    /// The frontier nearest to the robot on the ground plan, and the number of words,
+    /// tiles and cells looked at.
+    ///
+    /// It is the nearest of those in the eight nearest tiles with frontiers; one
+    /// farther away can be nearer by the diagonal of a tile at most.
+    ///
+    /// Cost: a [`Surface::nearest_frontier_tiles`], and 512 cells at most.
+    // [Renzaglia2019 Algorithm 1, ClosestFrontier]
+    pub fn closest_frontier(&self) -> (Option<Cell>, u32) {
+        let (tiles, mut work) = self.surface.nearest_frontier_tiles::<8>(self.position);
+        let mut best: Option<(f32, Cell)> = None;
+        for tile in tiles {
+            work += 1;
+            if best.is_some_and(|(least, _)| distance_to_tile(self.position, tile) >= least) {
+                break;
+            }
+            for bit in Bits(self.surface.frontier_cells(tile)) {
+                work += 1;
                 let cell = tile.cell(bit);
-                let distance = from.plan_distance(Point::over(cell, 0.0));
-                if best.is_none_or(|(least, _)| distance < least) && wanted(cell) {
+                let distance = self.position.plan_distance(Point::over(cell, 0.0));
+                if best.is_none_or(|(least, _)| distance < least) {
                     best = Some((distance, cell));
                 }
             }
         }
         (best.map(|(_, cell)| cell), work)
     }
-}
-
-/// Distance on the plan from `from` to the nearest cell centre that `tile` can have.
-pub(crate) fn distance_to_tile(from: Point, tile: Tile) -> f32 {
-    let (north_west, south_east) = (tile.cell(0), tile.cell(63));
-    let beside = |at: f32, low: i16, high: i16| {
-        (f32::from(low) + 0.5 - at)
-            .max(at - f32::from(high) - 0.5)
-            .max(0.0)
-    };
-    crate::math::length(
-        beside(from.x, north_west.x, south_east.x),
-        beside(from.y, north_west.y, south_east.y),
-    )
 }

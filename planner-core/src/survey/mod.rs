@@ -1,13 +1,17 @@
 //! What every planner of a flying robot over a surface shares: its verbs, what it
 //! knows, how it flies, and the way out when nothing is gained any more.
 //!
-//! One step of a robot is [`observe`](Surveyor::observe); then, with every robot in
-//! radio range, [`hear`](Surveyor::hear) and [`merge`](Surveyor::merge) what the
-//! others sense; then [`tick`](Surveyor::tick), which says where to fly, and
+//! One step of a robot is [`observe`](Surveyor::observe); then
+//! [`transmit`](Surveyor::transmit) and [`receive`](Surveyor::receive); then
+//! [`tick`](Surveyor::tick), which says where to fly, and
 //! [`report`](Surveyor::report). No call does I/O, allocates or panics.
+//!
+//! Where a medium carries more than frames, as in the papers, robots
+//! [`hear`](Surveyor::hear) each other and [`merge`](Surveyor::merge) pieces of maps.
 
 mod flight;
 mod knowledge;
+mod link;
 mod news;
 mod peers;
 mod rescue;
@@ -23,6 +27,7 @@ use core::fmt;
 
 use crate::cell::Cell;
 use crate::point::Point;
+use crate::radio::{FrameError, MAX_LEN};
 use crate::surface::{Column, Patch};
 
 /// The physics of a fleet: what its sensors reach and which poses are allowed, the
@@ -127,11 +132,15 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     fn tick(&mut self) -> Action;
 
     /// What the robot tells the others about itself.
-    fn status(&self) -> Status;
+    fn status(&self) -> Status {
+        self.knowledge().status()
+    }
 
     /// Cells, tiles, candidates and samples looked at by the last
     /// [`tick`](Self::tick): what its time is proportional to.
-    fn work(&self) -> u32;
+    fn work(&self) -> u32 {
+        self.knowledge().work()
+    }
 
     /// Begins a step: where the robot is, and the columns that it sees from there.
     fn observe(&mut self, at: Point, columns: &[Column]) {
@@ -148,8 +157,23 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         self.knowledge_mut().merge(patch);
     }
 
-    /// Says how the last [`Action::Fly`] went.
-    fn report(&mut self, motion: Motion) {
-        self.knowledge_mut().report(motion);
+    /// Says how the last [`Action::Fly`] went, and where the robot is now.
+    fn report(&mut self, motion: Motion, at: Point) {
+        self.knowledge_mut().report(motion, at);
+    }
+
+    /// Writes the next frame for the radio and returns its length, or `None` while the
+    /// budget allows none. Call it as often as it gives one, after
+    /// [`observe`](Self::observe) and after [`report`](Self::report).
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        self.knowledge_mut().transmit(buffer)
+    }
+
+    /// Takes in another robot's frame; gives the number of columns that it brought.
+    ///
+    /// # Errors
+    /// See [`FrameError`]; nothing has changed then.
+    fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
+        self.knowledge_mut().receive(bytes)
     }
 }

@@ -60,6 +60,8 @@ impl Window {
 #[derive(Clone, Debug)]
 pub(super) struct News {
     steps: [Window; REPEATS],
+    /// Those of them that were not yet sent in this step.
+    unsent: [Window; REPEATS],
     /// Bit k of the number of others, in the words of plane k: enough for 15.
     others: [Window; 4],
 }
@@ -68,6 +70,7 @@ impl News {
     pub(super) const fn new() -> Self {
         Self {
             steps: [Window::EMPTY; REPEATS],
+            unsent: [Window::EMPTY; REPEATS],
             others: [Window::EMPTY; 4],
         }
     }
@@ -89,14 +92,37 @@ impl News {
             *current = fresh;
         }
         self.others = [fresh; 4];
+        self.unsent = self.steps;
     }
 
     /// The robot itself sees `cell` for the first time.
     pub(super) fn add(&mut self, cell: Cell) {
-        if let Some(word) = Tile::of(cell)
-            .and_then(|tile| self.steps.first_mut().and_then(|step| step.word_mut(tile)))
+        let Some(tile) = Tile::of(cell) else { return };
+        for windows in [&mut self.steps, &mut self.unsent] {
+            if let Some(word) = windows.first_mut().and_then(|step| step.word_mut(tile)) {
+                *word |= 1 << Tile::bit(cell);
+            }
+        }
+    }
+
+    /// Columns to send next, newest first, and whether they are of this very step.
+    pub(super) fn next_unsent(&self) -> Option<(Tile, u64, bool)> {
+        (0..).zip(&self.unsent).find_map(|(age, step)| {
+            let (tile, cells) = step.tiles().next()?;
+            Some((tile, cells, age == 0))
+        })
+    }
+
+    /// These columns were sent: they wait for the next step.
+    pub(super) fn mark_sent(&mut self, tile: Tile, cells: u64) {
+        let waiting = |step: &&mut Window| step.word(tile) & cells != 0;
+        if let Some(word) = self
+            .unsent
+            .iter_mut()
+            .find(waiting)
+            .and_then(|step| step.word_mut(tile))
         {
-            *word |= 1 << Tile::bit(cell);
+            *word &= !cells;
         }
     }
 

@@ -17,6 +17,8 @@ pub struct Peer {
     pub status: Status,
     /// Steps since.
     pub age: u8,
+    /// Number of the frame that it said it in; 0 where there are no frames.
+    pub sequence: u16,
 }
 
 /// At most [`MAX_PEERS`] robots, each once.
@@ -44,15 +46,33 @@ impl Peers {
         })
     }
 
+    /// The same by frame number `sequence`; older frames than the last are ignored.
+    pub(super) fn hear_frame(&mut self, id: u8, status: Status, sequence: u16) {
+        let heard = self.iter().find(|peer| peer.id == id);
+        let is_news = |peer: &Peer| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
+        if heard.is_none_or(is_news) {
+            self.put(id, status, sequence);
+        }
+    }
+
     /// Replaces what `id` said before, or else takes an empty or the oldest place.
     pub(super) fn hear(&mut self, id: u8, status: Status) {
+        self.put(id, status, 0);
+    }
+
+    fn put(&mut self, id: u8, status: Status, sequence: u16) {
         let staleness = |place: &Place| match place {
             Place::Taken(peer) if peer.id == id => u16::MAX,
             Place::Taken(peer) => u16::from(peer.age),
             Place::Empty => u16::MAX - 1,
         };
         if let Some(place) = self.0.iter_mut().max_by_key(|place| staleness(place)) {
-            *place = Place::Taken(Peer { id, status, age: 0 });
+            *place = Place::Taken(Peer {
+                id,
+                status,
+                age: 0,
+                sequence,
+            });
         }
     }
 

@@ -7,10 +7,13 @@
 //! deep drop shows; from there the robot climbs to the ceiling, and a tower's top
 //! shows.
 
+mod way;
+
 use super::{Action, Knowledge, Stop};
 use crate::cell::{Cell, Direction};
 use crate::point::Point;
-use crate::surface::{Columns, Tile, neighbours_of};
+use crate::surface::{Bits, Columns, Tile};
+use way::{Way, word_of};
 
 /// Steps without gain after which the rescue begins.
 pub const PATIENCE: u16 = 50;
@@ -18,31 +21,43 @@ pub const PATIENCE: u16 = 50;
 /// Height over the least altitude at which it flies.
 const MARGIN: f32 = 0.1;
 
+/// Tiles looked at in a step for a frontier to fly to.
+const SLICE: usize = 64;
+
 /// Which frontiers have been looked over since the map last grew, and the one that is.
 #[derive(Clone, Debug)]
 pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     tried: [[u64; TW]; TH],
     known_columns: u32,
     target: Option<Cell>,
+    /// The search for the next target: the tile that comes next, how many are left,
+    /// and the nearest frontier found so far.
+    cursor: Tile,
+    left: usize,
+    nearest: Option<(f32, Cell)>,
+    way: Way<TW, TH>,
     /// Which of the target's four edges is looked over.
     edge: u8,
     /// Whether the robot is there and climbs.
     climbing: bool,
     /// Steps left to get there.
     patience: u16,
-    pub(crate) work: u32,
 }
 
 impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
-    pub(crate) const fn new() -> Self {
+    /// All zero, until [`reset`](Self::reset).
+    pub(crate) const fn vacant() -> Self {
         Self {
             tried: [[0; TW]; TH],
             known_columns: 0,
             target: None,
+            cursor: Tile { x: 0, y: 0 },
+            left: 0,
+            nearest: None,
+            way: Way::vacant(),
             edge: 0,
             climbing: false,
             patience: 0,
-            work: 0,
         }
     }
 
@@ -51,41 +66,41 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.tried = [[0; TW]; TH];
         self.known_columns = 0;
         self.target = None;
+        self.cursor = Tile { x: 0, y: 0 };
+        self.begin_search();
+        self.way.begin(None);
         self.edge = 0;
         self.climbing = false;
         self.patience = 0;
-        self.work = 0;
-    }
-
-    /// The frontier that it flies to.
-    pub(crate) const fn target(&self) -> Option<Cell> {
-        self.target
     }
 
     /// One step of the rescue.
     ///
-    /// Cost: a [`Knowledge::closest_frontier`] when a target is done, and at most 30
-    /// flights looked at.
-    pub(crate) fn tick(&mut self, knowledge: &Knowledge<TW, TH>) -> Action {
-        let surface = knowledge.surface();
-        self.work = 30;
-        if self.known_columns != surface.known_columns() {
-            self.known_columns = surface.known_columns();
+    /// Cost: 64 tiles while a target is searched for, 1024 while the way to it is, and
+    /// at most 30 flights looked at.
+    pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
+        let known_columns = knowledge.surface().known_columns();
+        if self.known_columns != known_columns {
+            self.known_columns = known_columns;
             self.tried = [[0; TW]; TH];
+            self.begin_search();
         }
-        if !self
-            .target
-            .is_some_and(|target| surface.is_frontier(target))
-        {
-            let here = knowledge.position();
-            let (target, work) = knowledge.closest_frontier(here, |cell| !self.was_tried(cell));
-            self.work = self.work.saturating_add(work);
-            self.target = target;
+        let is_frontier = |target| knowledge.surface().is_frontier(target);
+        if !self.target.is_some_and(is_frontier) {
+            self.target = None;
+            self.search(knowledge);
+            if self.left > 0 {
+                return Action::Hover;
+            }
+            self.target = self.nearest.map(|(_, cell)| cell);
+            self.begin_search();
             self.begin(knowledge, 0);
+            self.way.begin(self.target);
         }
+        knowledge.set_target(self.target);
         let Some(target) = self.target else {
-            return Action::Stop(Stop::Unseen {
-                frontiers: surface.frontiers(),
+            return knowledge.stop(Stop::Unseen {
+                frontiers: knowledge.surface().frontiers(),
             });
         };
         let Some((edge, place)) = edge_of(knowledge, target, self.edge) else {
@@ -95,9 +110,18 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         };
         self.edge = edge;
         if !self.climbing {
-            self.patience = self.patience.saturating_sub(1);
             let cruise = knowledge.limits().min_altitude + MARGIN;
-            let next = self.next_place(knowledge, target, place);
+            knowledge.look_at(29);
+            let next = if is_known_between(knowledge, place) {
+                place
+            } else {
+                match self.way.next(knowledge) {
+                    way::Next::Column(cell) => Point::over(cell, 0.0),
+                    way::Next::Searching => return Action::Hover,
+                    way::Next::None => place,
+                }
+            };
+            self.patience = self.patience.saturating_sub(1);
             match knowledge.step_towards(next, cruise) {
                 Some(to) if self.patience > 0 => return Action::Fly(to),
                 _ => self.climbing = true,
@@ -111,55 +135,33 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         Action::Hover
     }
 
-    /// Where to fly next on the way to `place` over `target`: there if all ground on
-    /// the straight way is known, or else to the next column on the shortest way over
-    /// known columns.
-    ///
-    /// Cost: the columns on the straight way, or all tiles once for each column of the
-    /// shortest way.
-    #[inline(never)] // what it keeps on the stack goes with it
-    fn next_place(&mut self, knowledge: &Knowledge<TW, TH>, target: Cell, place: Point) -> Point {
-        let surface = knowledge.surface();
+    fn begin_search(&mut self) {
+        self.left = TW * TH;
+        self.nearest = None;
+    }
+
+    /// Looks at the next few tiles for the nearest frontier that was not tried.
+    fn search(&mut self, knowledge: &mut Knowledge<TW, TH>) {
         let here = knowledge.position();
-        if Columns::new(here, place).all(|crossing| surface.height(crossing.cell).is_some()) {
-            return place;
-        }
-        // A wave from the target until it wets a column beside the robot.
-        let mut wave = [[0u64; TW]; TH];
-        if let Some(word) = word_of(&mut wave, target) {
-            *word |= 1 << Tile::bit(target);
-        }
-        for _ in 0..surface.known_columns() {
-            let beside = Direction::ALL.map(|direction| here.cell().step(direction));
-            let wet = beside.into_iter().find(|&cell| {
-                word_of(&mut wave, cell).is_some_and(|word| *word >> Tile::bit(cell) & 1 == 1)
-            });
-            if let Some(cell) = wet {
-                return Point::over(cell, 0.0);
+        for _ in 0..SLICE.min(self.left) {
+            let tile = self.cursor;
+            self.cursor = knowledge.surface().tile_after(tile);
+            self.left -= 1;
+            knowledge.look_at(1);
+            if knowledge.surface().frontiers_in(tile) == 0 {
+                continue;
             }
-            self.work = self.work.saturating_add((TW * TH) as u32);
-            let before = wave;
-            let at = |x: Option<u8>, y: Option<u8>| {
-                let row = before.get(usize::from(y?))?;
-                row.get(usize::from(x?)).copied()
-            };
-            for tile in surface.tiles() {
-                let around = [
-                    at(Some(tile.x), tile.y.checked_sub(1)),
-                    at(tile.x.checked_add(1), Some(tile.y)),
-                    at(Some(tile.x), tile.y.checked_add(1)),
-                    at(tile.x.checked_sub(1), Some(tile.y)),
-                ]
-                .map(|word| word.unwrap_or(0));
-                if let Some(word) = word_of(&mut wave, tile.cell(0)) {
-                    *word |= neighbours_of(*word, around) & surface.known(tile);
+            let tried = word_of(&mut self.tried, tile.cell(0)).map_or(0, |word| *word);
+            let open = knowledge.surface().frontier_cells(tile) & !tried;
+            knowledge.look_at(open.count_ones());
+            for bit in Bits(open) {
+                let cell = tile.cell(bit);
+                let distance = here.plan_distance(Point::over(cell, 0.0));
+                if self.nearest.is_none_or(|(least, _)| distance < least) {
+                    self.nearest = Some((distance, cell));
                 }
             }
-            if wave == before {
-                break;
-            }
         }
-        place
     }
 
     /// Sets out for the target's edge number `edge`.
@@ -172,15 +174,6 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         });
     }
 
-    fn was_tried(&self, cell: Cell) -> bool {
-        Tile::of(cell).is_some_and(|tile| {
-            self.tried
-                .get(usize::from(tile.y))
-                .and_then(|row| row.get(usize::from(tile.x)))
-                .is_some_and(|word| word >> Tile::bit(cell) & 1 == 1)
-        })
-    }
-
     fn mark_tried(&mut self, cell: Cell) {
         if let Some(word) = word_of(&mut self.tried, cell) {
             *word |= 1 << Tile::bit(cell);
@@ -188,15 +181,15 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 }
 
-/// The word of a layer that has the bit of `cell`.
-fn word_of<const TW: usize, const TH: usize>(
-    layer: &mut [[u64; TW]; TH],
-    cell: Cell,
-) -> Option<&mut u64> {
-    let tile = Tile::of(cell)?;
-    layer
-        .get_mut(usize::from(tile.y))?
-        .get_mut(usize::from(tile.x))
+/// Whether all ground on the straight way to `place` is known.
+///
+/// Cost: the columns crossed.
+fn is_known_between<const TW: usize, const TH: usize>(
+    knowledge: &Knowledge<TW, TH>,
+    place: Point,
+) -> bool {
+    Columns::new(knowledge.position(), place)
+        .all(|crossing| knowledge.surface().height(crossing.cell).is_some())
 }
 
 /// The first edge of `frontier`, from number `first` on, that borders an unknown

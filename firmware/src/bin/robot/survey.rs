@@ -2,12 +2,13 @@
 
 use bridge::{
     Cost, Hello, Inbox, MAX_MESSAGE, Seen, SurveyAnswer, SurveyReply, SurveyRequest,
-    SurveyorConfig, VERSION, Welcome, relief, told,
+    SurveyorConfig, VERSION, Welcome, imprint, relief, told,
 };
 use firmware::{CLOCK_HZ, Stopwatch};
 use planner_core::Extent;
 use planner_core::coordinated_survey::CoordinatedSurvey;
 use planner_core::fcao::Fcao;
+use planner_core::radio::MAX_LEN;
 use planner_core::survey::{SetupError, Surveyor};
 use static_cell::ConstStaticCell;
 
@@ -117,7 +118,17 @@ fn obey(
             };
             (decided, cost)
         }
-        SurveyRequest::Report(motion) => done(stopwatch.measure(|| planner.report(motion))),
+        SurveyRequest::Report(motion, at) => done(stopwatch.measure(|| planner.report(motion, at))),
+        SurveyRequest::Transmit => {
+            let mut frame = [0; MAX_LEN];
+            let (length, cost) = stopwatch.measure(|| planner.transmit(&mut frame));
+            let frame = length.and_then(|length| frame.get(..length));
+            (SurveyReply::Sent(frame.map(imprint)), cost)
+        }
+        SurveyRequest::Receive(bytes) => {
+            let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));
+            (SurveyReply::Heard(heard), cost)
+        }
         SurveyRequest::Memory => (SurveyReply::Memory(memory(size)), Cost::default()),
         SurveyRequest::End => return None,
     })

@@ -1,16 +1,22 @@
 //! Pictures of a run, all from its trace.
 
 mod animation;
-mod curve;
+mod coverage;
 mod oblique;
 mod top;
 
-pub use animation::animation;
-pub use curve::{Curve, curves};
+pub use animation::{animate, animation};
+pub use coverage::coverage_plot;
 pub use oblique::oblique_view;
+pub(super) use oblique::{Block, oblique};
 pub use top::top_view;
 
-use image::Rgb;
+use std::io;
+
+use image::codecs::png::PngEncoder;
+use image::{ImageEncoder, Rgb, RgbImage};
+
+use crate::draw::DrawError;
 
 /// Colours of the robots, in turn; distinguishable for most colour-blind readers.
 // [Okabe2008]
@@ -24,6 +30,16 @@ pub(super) const ROBOT_COLOURS: [Rgb<u8>; 8] = [
     Rgb([204, 121, 167]),
     Rgb([120, 120, 120]),
 ];
+
+/// Writes `picture` as PNG.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_png(picture: &RgbImage, to: impl io::Write) -> Result<(), DrawError> {
+    let (width, height) = picture.dimensions();
+    let colour = image::ExtendedColorType::Rgb8;
+    Ok(PngEncoder::new(to).write_image(picture.as_raw(), width, height, colour)?)
+}
 
 /// Colour of ground at height `ground` where the highest is `highest`.
 pub(super) fn shade(ground: f32, highest: f32) -> Rgb<u8> {

@@ -1,79 +1,97 @@
 //! The view from the south-east and above: columns as blocks, ways in the air.
 
 use image::{Rgb, RgbImage};
-use planner_core::{Cell, Point};
+use planner_core::{Cell, Extent, Point};
 
 use super::{ROBOT_COLOURS, shade};
-use crate::survey::{Terrain, Trace};
+use crate::survey::Trace;
 
-/// Pixels of a cell along the picture's x axis, and up.
-const SCALE: f32 = 4.0;
+/// Width of a picture in pixels, about.
+const WIDTH: f32 = 900.0;
 
-/// Where a point falls: an isometric view with north away to the right.
-fn project(at: Point, origin: (f32, f32)) -> (f32, f32) {
-    (
-        origin.0 + (at.x - at.y) * SCALE,
-        origin.1 + (at.x + at.y) * SCALE * 0.5 - at.z * SCALE,
-    )
+/// An isometric view with north away to the right.
+#[derive(Clone, Copy)]
+struct View {
+    /// Pixels of a cell along the picture's x axis, and up.
+    scale: f32,
+    /// Where the north-west corner of the ground is.
+    origin: (f32, f32),
+}
+
+impl View {
+    /// Where a point falls.
+    fn project(self, at: Point) -> (f32, f32) {
+        (
+            self.origin.0 + (at.x - at.y) * self.scale,
+            self.origin.1 + (at.x + at.y) * self.scale * 0.5 - at.z * self.scale,
+        )
+    }
 }
 
 /// What had been mapped after `step` steps, with the ways flown; what is unknown is
 /// left dark.
-pub fn oblique_view(terrain: &Terrain, trace: &Trace, step: u32) -> RgbImage {
-    let extent = terrain.extent();
+pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
+    let blocks = trace.mapped(step).map(|column| Block {
+        cell: column.cell,
+        bottom: 0.0,
+        top: column.height.cells(),
+    });
+    let ways: Vec<_> = (0..trace.robots)
+        .map(|robot| trace.way(robot, step))
+        .collect();
+    let highest = trace.terrain.highest().cells();
+    oblique(trace.extent, highest, blocks.collect(), &ways)
+}
+
+/// Something solid over one column of cells.
+pub(in crate::survey) struct Block {
+    pub(in crate::survey) cell: Cell,
+    pub(in crate::survey) bottom: f32,
+    pub(in crate::survey) top: f32,
+}
+
+/// Blocks and ways in a box whose blocks reach up to `highest`.
+pub(in crate::survey) fn oblique(
+    extent: Extent,
+    highest: f32,
+    mut blocks: Vec<Block>,
+    ways: &[Vec<Point>],
+) -> RgbImage {
     let (width, height) = (f32::from(extent.width), f32::from(extent.height));
     let margin = 20.0;
-    let top = terrain.highest().cells() + 8.0;
-    let origin = (height * SCALE + margin, top * SCALE + margin);
+    let top = highest + 8.0;
+    let scale = (WIDTH / (width + height)).clamp(2.0, 12.0).floor();
+    let view = View {
+        scale,
+        origin: (height * scale + margin, top * scale + margin),
+    };
     let mut picture = RgbImage::from_pixel(
-        ((width + height) * SCALE + 2.0 * margin) as u32,
-        ((width + height) * SCALE * 0.5 + top * SCALE + 2.0 * margin) as u32,
+        ((width + height) * scale + 2.0 * margin) as u32,
+        ((width + height) * scale * 0.5 + top * scale + 2.0 * margin) as u32,
         Rgb([24, 26, 30]),
     );
-    let mut known = vec![None; extent.cells() as usize];
-    for column in trace.mapped(step) {
-        let index = column.cell.y as usize * usize::from(extent.width) + column.cell.x as usize;
-        known[index] = Some(column.height.cells());
+    // Far blocks first, so that near ones cover them.
+    blocks.sort_by(|a, b| {
+        let depth = |block: &Block| block.cell.x + block.cell.y;
+        depth(a).cmp(&depth(b)).then(a.bottom.total_cmp(&b.bottom))
+    });
+    for solid in &blocks {
+        block(&mut picture, solid, highest, view);
     }
-    // Far columns first, so that near ones cover them.
-    let mut cells: Vec<Cell> = terrain.cells().collect();
-    cells.sort_by_key(|cell| cell.x + cell.y);
-    for cell in cells {
-        let index = cell.y as usize * usize::from(extent.width) + cell.x as usize;
-        if let Some(ground) = known[index] {
-            block(
-                &mut picture,
-                cell,
-                ground,
-                terrain.highest().cells(),
-                origin,
-            );
-        }
-    }
-    for robot in 0..trace.robots {
+    for (robot, way) in ways.iter().enumerate() {
         let colour = ROBOT_COLOURS[robot % ROBOT_COLOURS.len()];
-        let way = trace.way(robot, step);
         for leg in way.windows(2) {
-            let ((x0, y0), (x1, y1)) = (project(leg[0], origin), project(leg[1], origin));
+            let ((x0, y0), (x1, y1)) = (view.project(leg[0]), view.project(leg[1]));
             let pixels = (x1 - x0).abs().max((y1 - y0).abs()).ceil().max(1.0);
             for i in 0..=pixels as u32 {
                 let share = i as f32 / pixels;
-                put(
-                    &mut picture,
-                    x0 + (x1 - x0) * share,
-                    y0 + (y1 - y0) * share,
-                    colour,
-                );
-                put(
-                    &mut picture,
-                    x0 + (x1 - x0) * share,
-                    y0 + (y1 - y0) * share + 1.0,
-                    colour,
-                );
+                let (x, y) = (x0 + (x1 - x0) * share, y0 + (y1 - y0) * share);
+                put(&mut picture, x, y, colour);
+                put(&mut picture, x, y + 1.0, colour);
             }
         }
         if let Some(last) = way.last() {
-            let (x, y) = project(*last, origin);
+            let (x, y) = view.project(*last);
             for dy in -4i8..=4 {
                 for dx in -4i8..=4 {
                     if i32::from(dx).pow(2) + i32::from(dy).pow(2) <= 16 {
@@ -86,15 +104,16 @@ pub fn oblique_view(terrain: &Terrain, trace: &Trace, step: u32) -> RgbImage {
     picture
 }
 
-/// One column: its top, and its two sides that face the viewer.
-fn block(picture: &mut RgbImage, cell: Cell, ground: f32, highest: f32, origin: (f32, f32)) {
-    let colour = shade(ground, highest);
+/// One block: its top, and its two sides that face the viewer.
+fn block(picture: &mut RgbImage, block: &Block, highest: f32, view: View) {
+    let scale = view.scale;
+    let colour = shade(block.top, highest);
     let darker = |share: f32| Rgb(colour.0.map(|value| (f32::from(value) * share) as u8));
-    let (x, y) = project(Point::over(cell, ground), origin);
-    let wide = SCALE as i32;
-    let deep = (ground * SCALE) as i32;
+    let (x, y) = view.project(Point::over(block.cell, block.top));
+    let wide = scale as i32;
+    let deep = ((block.top - block.bottom) * scale) as i32;
     for dx in -wide..=wide {
-        let half = (SCALE * 0.5 * (1.0 - dx.abs() as f32 / SCALE)) as i32;
+        let half = (scale * 0.5 * (1.0 - dx.abs() as f32 / scale)).ceil() as i32;
         for dy in -half..=half {
             put(picture, x + dx as f32, y + dy as f32, colour);
         }

@@ -4,14 +4,15 @@ use image::{Rgb, RgbImage};
 use planner_core::Point;
 
 use super::{ROBOT_COLOURS, shade};
-use crate::survey::{Terrain, Trace};
+use crate::survey::Trace;
 
 /// Pixels of a cell's side.
 const SCALE: u32 = 6;
 
 /// What had been mapped after `step` steps, light where it is high, with the way of each robot flown
 /// until then, a ring where it started and a disc where it is.
-pub fn top_view(terrain: &Terrain, trace: &Trace, step: u32) -> RgbImage {
+pub fn top_view(trace: &Trace, step: u32) -> RgbImage {
+    let terrain = &trace.terrain;
     let extent = terrain.extent();
     let mut picture = RgbImage::from_pixel(
         u32::from(extent.width) * SCALE,

@@ -1,0 +1,160 @@
+//! A survey in one JSON object.
+
+use planner_core::survey::Stop;
+use serde::Serialize;
+
+use super::{Deed, Planner, Safety, Trace};
+use crate::medium::MediumKind;
+
+/// What a survey came to; the keys are those of `explore` where they mean the same. A
+/// cell is a column here.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Whether every column was seen by somebody, without a violation.
+    pub complete: bool,
+    /// Steps until all columns had been seen.
+    pub ticks_to_seen: Option<u32>,
+    /// Steps until 95 % of them had.
+    pub ticks_to_95: Option<u32>,
+    /// Steps until 99 % of them had.
+    pub ticks_to_99: Option<u32>,
+    /// Steps until every living robot had stopped.
+    pub ticks_to_stopped: Option<u32>,
+    /// Steps that were run.
+    pub ticks: u32,
+    /// Columns there are.
+    pub reachable_cells: u32,
+    /// Columns that somebody has seen.
+    pub seen_cells: u32,
+    /// Largest work of one planner in one step.
+    pub max_work_per_tick: u32,
+    /// Mean of it.
+    pub mean_work_per_tick: f64,
+    /// Length of all ways, in cells.
+    pub distance: f64,
+    /// Whatever should never happen; anything but 0 is a bug of the planner.
+    pub violations: u32,
+    /// The same by kind.
+    pub safety: Safety,
+    /// [`Trace::digest`].
+    pub trace_digest: String,
+    /// Name of the terrain.
+    pub map: String,
+    /// How the robots decided.
+    pub planner: Planner,
+    /// Sensor range in cells.
+    pub range: f32,
+    /// Longest flight in a step, in cells.
+    pub step: f32,
+    /// What carried what robots told each other.
+    pub medium: MediumKind,
+    /// Bytes that a robot might send by radio in a step on average.
+    pub byte_budget: u16,
+    /// Share of messages lost, 0 to 1.
+    pub loss: f64,
+    /// Share of steps slept through, 0 to 1.
+    pub skip: f64,
+    /// Seed of all chance in the run.
+    pub seed: u64,
+    /// Robot by robot.
+    pub robots: Vec<RobotSummary>,
+}
+
+/// What one robot came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct RobotSummary {
+    /// Where it started, in cells.
+    pub start: (f32, f32, f32),
+    /// Flights.
+    pub steps: u32,
+    /// Flights that were refused for another robot's sake.
+    pub blocked_steps: u32,
+    /// Length of its way, in cells.
+    pub distance: f64,
+    /// Columns on its own map.
+    pub cells_known: u32,
+    /// Its reward over the run [Renzaglia2019 eq. 1].
+    pub reward: f64,
+    /// Work of its planner over the run.
+    pub work: u64,
+    /// Frames sent by radio.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
+    /// `complete`, `unseen`; `null` if it had not stopped.
+    pub stop: Option<&'static str>,
+    /// The reason in words.
+    pub stop_reason: Option<String>,
+    /// Whether it lived to the end of the run.
+    pub alive: bool,
+}
+
+impl Summary {
+    /// The summary of a run.
+    pub fn new(trace: &Trace) -> Self {
+        let work = || trace.records.iter().map(|record| record.work);
+        let robots: Vec<_> = (0..trace.robots)
+            .map(|robot| RobotSummary::new(trace, robot))
+            .collect();
+        let scenario = &trace.scenario;
+        let violations = trace.safety.violations();
+        Self {
+            complete: trace.complete() && violations == 0,
+            ticks_to_seen: trace.ticks_to(1.0),
+            ticks_to_95: trace.ticks_to(0.95),
+            ticks_to_99: trace.ticks_to(0.99),
+            ticks_to_stopped: trace.ticks_to_stopped(),
+            ticks: trace.seen.len() as u32 - 1,
+            reachable_cells: trace.extent.cells(),
+            seen_cells: trace.seen.last().copied().unwrap_or(0),
+            max_work_per_tick: work().max().unwrap_or(0),
+            mean_work_per_tick: work().map(f64::from).sum::<f64>()
+                / trace.records.len().max(1) as f64,
+            distance: robots.iter().map(|robot| robot.distance).sum(),
+            violations,
+            safety: trace.safety,
+            trace_digest: trace.digest(),
+            map: trace.terrain.name().into(),
+            planner: scenario.planner,
+            range: scenario.limits.range,
+            step: scenario.limits.step,
+            medium: scenario.medium,
+            byte_budget: scenario.byte_budget,
+            loss: scenario.loss,
+            skip: scenario.skip,
+            seed: scenario.seed,
+            robots,
+        }
+    }
+}
+
+impl RobotSummary {
+    fn new(trace: &Trace, robot: usize) -> Self {
+        let count = |deed| trace.of(robot).filter(|r| r.deed == deed).count() as u32;
+        let way = trace.way(robot, u32::MAX);
+        let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
+        let start = trace.starts[robot];
+        let stop = trace.of(robot).last().and_then(|record| match record.deed {
+            Deed::Stopped(stop) => Some(stop),
+            _ => None,
+        });
+        let dies = |kill: &super::Kill| kill.robot == robot && kill.step < trace.seen.len() as u32;
+        Self {
+            start: (start.x, start.y, start.z),
+            steps: count(Deed::Flew),
+            blocked_steps: count(Deed::Refused),
+            distance: legs.sum(),
+            cells_known: trace.of(robot).last().map_or(0, |record| record.known),
+            reward: trace.of(robot).map(|record| f64::from(record.gain)).sum(),
+            work: trace.of(robot).map(|record| u64::from(record.work)).sum(),
+            frames_sent: trace.of(robot).map(|record| record.sent.frames).sum(),
+            bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
+            stop: stop.map(|stop| match stop {
+                Stop::Complete => "complete",
+                Stop::Unseen { .. } => "unseen",
+            }),
+            stop_reason: stop.map(|stop| stop.to_string()),
+            alive: !trace.scenario.kills.iter().any(dies),
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! Fleets of flying robots in boxes of voxels: streets, undersides, rooms.
+
+mod run;
+mod scene;
+
+pub use run::{Scenario, VoxelTrace, look, run};
+pub use scene::Scene;

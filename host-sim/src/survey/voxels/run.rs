@@ -1,0 +1,275 @@
+//! A run: sense, share, decide in turn, fly; until every robot has stopped.
+
+use std::collections::{BTreeSet, HashSet};
+use std::fmt::Write as _;
+use std::io;
+
+use planner_core::Point;
+use planner_core::surface::Tile;
+use planner_core::volume::{Voxel, VoxelPatch, in_sight};
+use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use sha2::{Digest, Sha256};
+
+use super::scene::Scene;
+use crate::survey::draw::{Block, oblique};
+use crate::survey::octree::OcTree;
+
+type Robot = VoxelSurvey<8, 8, 24>;
+
+/// Words of its map that a robot repeats in each step, in turn.
+const IN_TURN: usize = 16;
+
+/// What a run is a function of, beside the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Number of robots.
+    pub robots: usize,
+    /// Sensor range in voxels.
+    pub range: u8,
+    /// Share of messages lost, 0 to 1.
+    pub loss: f64,
+    /// Seed of the losses.
+    pub seed: u64,
+    /// Steps after which the run is given up.
+    pub max_ticks: u32,
+}
+
+/// A whole run.
+#[derive(Clone, Debug)]
+pub struct VoxelTrace {
+    /// What was run.
+    pub scenario: Scenario,
+    /// Where.
+    pub scene: Scene,
+    /// Where each robot was, step by step from its start.
+    pub ways: Vec<Vec<Voxel>>,
+    /// Work of each decision.
+    pub work: Vec<u32>,
+    /// Voxels in the order in which they were seen, each with the step and with whether
+    /// it is occupied.
+    pub found: Vec<(u32, Voxel, bool)>,
+    /// Occupied voxels that can be seen from any place that can be reached: all that
+    /// there is to see.
+    pub visible: u32,
+    /// Those that somebody had seen after each number of steps, from 0.
+    pub seen: Vec<u32>,
+    /// Whether every robot had stopped.
+    pub all_stopped: bool,
+    /// Flights into or beside something, or longer than a voxel.
+    pub violations: u32,
+}
+
+/// What `eye` sees within `range` voxels.
+pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
+    let reach = i16::from(range);
+    let mut seen = Vec::new();
+    for z in eye.z - reach..=eye.z + reach {
+        for y in eye.y - reach..=eye.y + reach {
+            for x in eye.x - reach..=eye.x + reach {
+                let voxel = Voxel::new(x, y, z);
+                if let Some(occupied) = scene.is_occupied(voxel)
+                    && eye.distance_squared(voxel) <= u32::from(range).pow(2)
+                    && in_sight(eye, voxel, |at| scene.is_occupied(at) != Some(true))
+                {
+                    seen.push((voxel, occupied));
+                }
+            }
+        }
+    }
+    seen
+}
+
+/// Runs `scenario` in `scene`. Robots start above the ground near the north-west
+/// corner, or wherever there is room first.
+///
+/// # Errors
+/// There is no room for a robot.
+pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
+    let start = scene
+        .voxels()
+        .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
+        .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
+        .ok_or("there is no room for a robot")?;
+    let config = Config {
+        range: scenario.range,
+    };
+    let mut robots = Vec::new();
+    for _ in 0..scenario.robots {
+        let robot = Robot::new(scene.extent(), scene.levels(), config);
+        robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+    }
+    let visible = visible(scene, start, scenario.range);
+    let mut trace = VoxelTrace {
+        scenario: scenario.clone(),
+        scene: scene.clone(),
+        ways: vec![vec![start]; scenario.robots],
+        work: Vec::new(),
+        found: Vec::new(),
+        visible: visible.len() as u32,
+        seen: Vec::new(),
+        all_stopped: false,
+        violations: 0,
+    };
+    let mut faults = ChaCha8Rng::seed_from_u64(scenario.seed);
+    let mut arrives = move || {
+        scenario.loss <= 0.0 || f64::from(faults.next_u32()) / f64::from(u32::MAX) >= scenario.loss
+    };
+    let mut known: HashSet<Voxel> = HashSet::new();
+    let mut seen = 0;
+    let mut turns = vec![(Tile { x: 0, y: 0 }, 0u8); scenario.robots];
+    for now in 0.. {
+        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
+        for (i, robot) in robots.iter_mut().enumerate() {
+            let at = *trace.ways[i].last().expect("it starts somewhere");
+            let view = look(scene, at, scenario.range);
+            let mut touched = BTreeSet::new();
+            for &(voxel, occupied) in &view {
+                if known.insert(voxel) {
+                    trace.found.push((now, voxel, occupied));
+                    seen += u32::from(visible.contains(&voxel));
+                }
+                touched.insert((Tile::of(voxel.cell()).expect("inside"), voxel.z as u8));
+            }
+            robot.observe(at, &view);
+            for _ in 0..IN_TURN {
+                touched.insert(turns[i]);
+                turns[i] = robot.volume().after(turns[i].0, turns[i].1);
+            }
+            let patches = touched
+                .into_iter()
+                .map(|(tile, z)| robot.volume().patch(tile, z));
+            messages.push(patches.collect());
+        }
+        for (from, message) in messages.iter().enumerate() {
+            for (to, robot) in robots.iter_mut().enumerate() {
+                if to != from && arrives() {
+                    for patch in message {
+                        robot.merge(patch);
+                    }
+                }
+            }
+        }
+        trace.seen.push(seen);
+        let mut going = false;
+        let mut next = Vec::new();
+        for i in 0..robots.len() {
+            let at = *trace.ways[i].last().expect("as above");
+            let action = robots[i].tick();
+            trace.work.push(robots[i].work());
+            going |= action != Action::Stop;
+            let to = match action {
+                Action::Fly(to) => to,
+                Action::Hover | Action::Stop => at,
+            };
+            let is_allowed = scene.is_pose(to) && at.distance_squared(to) <= 1;
+            trace.violations += u32::from(!is_allowed);
+            next.push(to);
+            let goal = robots[i].goal();
+            for (other, robot) in robots.iter_mut().enumerate() {
+                if other != i && arrives() {
+                    robot.hear(i as u8, to, goal);
+                }
+            }
+        }
+        trace.all_stopped = !going;
+        if !going || now >= scenario.max_ticks {
+            break;
+        }
+        for (way, to) in trace.ways.iter_mut().zip(next) {
+            way.push(to);
+        }
+    }
+    Ok(trace)
+}
+
+/// The occupied voxels that can be seen from any place that can be reached from `start`.
+fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
+    let mut reached = vec![start];
+    let mut is_reached: HashSet<Voxel> = reached.iter().copied().collect();
+    let mut visible = HashSet::new();
+    let mut next = 0;
+    while let Some(&at) = reached.get(next) {
+        next += 1;
+        let occupied = look(scene, at, range).into_iter().filter(|seen| seen.1);
+        visible.extend(occupied.map(|(voxel, _)| voxel));
+        for beside in at.beside() {
+            if scene.is_pose(beside) && is_reached.insert(beside) {
+                reached.push(beside);
+            }
+        }
+    }
+    visible
+}
+
+impl VoxelTrace {
+    /// Steps until `share` of all that there is to see had been seen.
+    pub fn ticks_to(&self, share: f64) -> Option<u32> {
+        let wanted = (share * f64::from(self.visible)).ceil() as u32;
+        let tick = self.seen.iter().position(|&seen| seen >= wanted);
+        tick.map(|tick| tick as u32)
+    }
+
+    /// Whether everything that can be seen was seen, without a violation.
+    pub fn complete(&self) -> bool {
+        self.seen.last() == Some(&self.visible) && self.violations == 0
+    }
+
+    /// What had been seen after `tick` steps as an octree, free voxels included.
+    pub fn octree(&self, tick: u32) -> OcTree {
+        let mut tree = OcTree::new(1.0);
+        let known = self.found.iter().take_while(|found| found.0 <= tick);
+        for (_, voxel, occupied) in known {
+            tree.insert([voxel.x, voxel.y, voxel.z].map(i32::from), *occupied);
+        }
+        tree
+    }
+
+    /// What had been seen after `tick` steps, with the ways flown.
+    pub fn oblique_view(&self, tick: u32) -> image::RgbImage {
+        let known = self.found.iter().take_while(|found| found.0 <= tick);
+        let blocks = known.filter(|found| found.2).map(|(_, voxel, _)| Block {
+            cell: voxel.cell(),
+            bottom: f32::from(voxel.z),
+            top: f32::from(voxel.z) + 1.0,
+        });
+        let point = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
+        let ways: Vec<Vec<Point>> = self
+            .ways
+            .iter()
+            .map(|way| way.iter().take(tick as usize + 1).map(point).collect())
+            .collect();
+        let highest = f32::from(self.scene.levels());
+        oblique(self.scene.extent(), highest, blocks.collect(), &ways)
+    }
+
+    /// Writes `tick,robot,x,y,z,work` line by line: where each robot decided.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
+        writeln!(to, "tick,robot,x,y,z,work")?;
+        let robots = self.ways.len();
+        for (i, work) in self.work.iter().enumerate() {
+            let (tick, robot) = (i / robots, i % robots);
+            let Voxel { x, y, z } = self.ways[robot][tick];
+            writeln!(to, "{tick},{robot},{x},{y},{z},{work}")?;
+        }
+        Ok(())
+    }
+
+    /// 16 hex digits that differ if any line of the trace does.
+    pub fn digest(&self) -> String {
+        let mut bytes = Vec::new();
+        self.write(&mut bytes).expect("a Vec takes everything");
+        let digest = Sha256::digest(&bytes);
+        digest
+            .iter()
+            .take(8)
+            .fold(String::new(), |mut digits, byte| {
+                write!(digits, "{byte:02x}").expect("a String takes everything");
+                digits
+            })
+    }
+}

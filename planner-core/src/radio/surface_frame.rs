@@ -1,0 +1,275 @@
+//! The frame of a height map: kind 2 of the wire format.
+
+use heapless::Vec;
+
+use super::frame::{
+    CHECK, CRC, Field, FrameError, MAX_LEN, TAG, VERSION, Writer, packed, unpacked,
+};
+use super::link::{GridId, Key};
+use crate::cell::{Cell, Extent};
+use crate::planner::RobotId;
+use crate::point::Point;
+use crate::surface::{Bits, Height, Patch, Tile};
+use crate::survey::Status;
+
+/// The kind of frame that carries columns of a height map.
+const HEIGHTS: u8 = 2;
+/// Bytes before the records.
+const HEADER: usize = 17;
+/// Bytes of a record before its heights.
+const RECORD: usize = 6;
+/// Bytes for records: the same with and without a key.
+const ROOM: usize = MAX_LEN - HEADER - TAG;
+
+/// Most columns in one record.
+pub(crate) const MAX_COLUMNS: usize = ROOM - RECORD;
+/// Most records in one frame: each has a column at least.
+const MAX_RECORDS: usize = ROOM / (RECORD + 1);
+
+/// Coordinates on the wire in one cell.
+const PER_CELL: f32 = 128.0;
+
+/// Some columns of the northern or southern half of a tile.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct HeightRecord {
+    /// Which tile; its coordinates are below 64.
+    pub tile: Tile,
+    /// Which half: rows 4 to 7 instead of 0 to 3.
+    pub south: bool,
+    /// See [`Patch::fresh`].
+    pub fresh: bool,
+    /// Which columns of the half, at least one.
+    pub cells: u32,
+    /// Their heights, lowest bit first: one for each bit of `cells`.
+    pub heights: Vec<Height, MAX_COLUMNS>,
+}
+
+/// One frame: who is where, going where, and some heights of its map.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SurfaceFrame {
+    /// The grid that cells and tiles refer to.
+    pub grid: GridId,
+    /// Who sends.
+    pub sender: RobotId,
+    /// Counts the sender's frames, and wraps around.
+    pub sequence: u16,
+    /// Where it is: x, y and z in 1/128 of a cell.
+    pub position: [u16; 3],
+    /// The frontier that it is on its way to.
+    pub target: Option<Cell>,
+    /// Whether it has stopped.
+    pub stopped: bool,
+    /// Heights of its map; together at most 34 bytes.
+    pub records: Vec<HeightRecord, MAX_RECORDS>,
+}
+
+impl HeightRecord {
+    /// The first columns of `cells` of one half of `patch` that fit beside `taken`
+    /// bytes of other records.
+    pub(crate) fn of(patch: &Patch, south: bool, cells: u64, taken: usize) -> Option<Self> {
+        let room = ROOM.checked_sub(taken)?.checked_sub(RECORD)?;
+        let shift = if south { 32 } else { 0 };
+        let half = (cells & patch.cells) >> shift & 0xffff_ffff;
+        let mut record = Self {
+            tile: patch.tile,
+            south,
+            fresh: patch.fresh,
+            cells: 0,
+            heights: Vec::new(),
+        };
+        for bit in Bits(half).take(room) {
+            let height = patch.heights.get((bit + shift) as usize)?;
+            record.heights.push(*height).ok()?;
+            record.cells |= 1 << bit;
+        }
+        (record.cells != 0).then_some(record)
+    }
+
+    /// Its columns as bits of the tile.
+    pub(crate) fn tile_cells(&self) -> u64 {
+        u64::from(self.cells) << if self.south { 32 } else { 0 }
+    }
+
+    /// Its length on the wire in bytes.
+    pub(crate) fn length(&self) -> usize {
+        RECORD + self.heights.len()
+    }
+
+    /// As it is joined into a map.
+    pub(crate) fn patch(&self) -> Patch {
+        let mut heights = [Height(0); 64];
+        let cells = self.tile_cells();
+        for (bit, height) in Bits(cells).zip(&self.heights) {
+            if let Some(place) = heights.get_mut(bit as usize) {
+                *place = *height;
+            }
+        }
+        Patch {
+            tile: self.tile,
+            cells,
+            heights,
+            fresh: self.fresh,
+        }
+    }
+}
+
+/// `position` as it travels: rounded down to 1/128 of a cell, so that it
+/// stays in its column; 0 and 511.99 beyond the ends.
+pub(crate) fn position_on_wire(position: Point) -> [u16; 3] {
+    [position.x, position.y, position.z].map(|v| (v * PER_CELL) as u16)
+}
+
+impl SurfaceFrame {
+    /// What the sender says of itself.
+    pub fn status(&self) -> Status {
+        let [x, y, z] = self.position.map(|v| f32::from(v) / PER_CELL);
+        Status {
+            position: Point::new(x, y, z),
+            target: self.target,
+            stopped: self.stopped,
+        }
+    }
+
+    /// Writes the frame and returns its length, at most [`MAX_LEN`]. Bytes behind are
+    /// not touched.
+    ///
+    /// The target must lie on the grid, and the records fit into 34 bytes together:
+    /// those that do not are left out.
+    pub fn encode(&self, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
+        let mut writer = Writer::new(buffer);
+        writer.put(&[VERSION, HEIGHTS]);
+        writer.put(&self.grid.0.to_le_bytes());
+        writer.put(&[self.sender.0]);
+        writer.put(&self.sequence.to_le_bytes());
+        writer.put(&[u8::from(self.stopped) | u8::from(self.target.is_some()) << 1]);
+        for coordinate in self.position {
+            writer.put(&coordinate.to_le_bytes());
+        }
+        writer.put(&self.target.map_or([0; 3], packed));
+        let mut room = ROOM;
+        for record in &self.records {
+            let Some(left) = room.checked_sub(record.length()) else {
+                break;
+            };
+            room = left;
+            let flags = u8::from(record.south) << 7 | u8::from(record.fresh) << 6;
+            writer.put(&[record.tile.x & 63 | flags, record.tile.y & 63]);
+            writer.put(&record.cells.to_le_bytes());
+            for height in &record.heights {
+                writer.put(&[height.0]);
+            }
+        }
+        writer.finish(key)
+    }
+
+    /// Reads a frame about `grid`, a grid of `extent` columns. Every field is looked
+    /// at before anything is returned.
+    ///
+    /// # Errors
+    /// Anything that [`encode`](Self::encode) would not have written, and frames
+    /// about other grids.
+    pub fn decode(
+        bytes: &[u8],
+        key: Option<&Key>,
+        grid: GridId,
+        extent: Extent,
+    ) -> Result<Self, FrameError> {
+        let wrong_length = FrameError::Length(bytes.len());
+        let check_bytes = if key.is_some() { TAG } else { CRC };
+        let body = bytes.len().checked_sub(check_bytes).ok_or(wrong_length)?;
+        let (body, check) = bytes.split_at_checked(body).ok_or(wrong_length)?;
+        let (header, mut rest) = body.split_first_chunk::<HEADER>().ok_or(wrong_length)?;
+        if rest.len() > ROOM {
+            return Err(wrong_length);
+        }
+        let &[
+            version,
+            kind,
+            g0,
+            g1,
+            sender,
+            s0,
+            s1,
+            state,
+            x0,
+            x1,
+            y0,
+            y1,
+            z0,
+            z1,
+            t0,
+            t1,
+            t2,
+        ] = header;
+        if version != VERSION {
+            return Err(FrameError::Version(version));
+        }
+        if kind != HEIGHTS {
+            return Err(FrameError::Kind(kind));
+        }
+        let intact = match key {
+            Some(key) => key.tag(body) == check,
+            None => CHECK.checksum(body).to_le_bytes() == check,
+        };
+        if !intact {
+            return Err(FrameError::Check);
+        }
+        let theirs = GridId(u16::from_le_bytes([g0, g1]));
+        if theirs != grid {
+            return Err(FrameError::OtherGrid(theirs));
+        }
+        if state & !3 != 0 {
+            return Err(FrameError::Field(Field::State));
+        }
+        let position = [[x0, x1], [y0, y1], [z0, z1]].map(u16::from_le_bytes);
+        let [x, y, _] = position.map(|coordinate| (coordinate >> 7) as i16);
+        if !extent.contains(Cell::new(x, y)) {
+            return Err(FrameError::Field(Field::Position));
+        }
+        let target = unpacked([t0, t1, t2]);
+        let has_target = state & 2 != 0;
+        if !has_target && [t0, t1, t2] != [0; 3] || !extent.contains(target) {
+            return Err(FrameError::Field(Field::Goal));
+        }
+        let mut records = Vec::new();
+        while !rest.is_empty() {
+            let (record, behind) = decode_record(rest, extent)?;
+            // There is room: the length was checked, and every record has a column.
+            let _ = records.push(record);
+            rest = behind;
+        }
+        Ok(Self {
+            grid: theirs,
+            sender: RobotId(sender),
+            sequence: u16::from_le_bytes([s0, s1]),
+            position,
+            target: has_target.then_some(target),
+            stopped: state & 1 != 0,
+            records,
+        })
+    }
+}
+
+fn decode_record(bytes: &[u8], extent: Extent) -> Result<(HeightRecord, &[u8]), FrameError> {
+    let wrong = FrameError::Field(Field::Tile);
+    let (&[x, y, c0, c1, c2, c3], rest) = bytes.split_first_chunk::<RECORD>().ok_or(wrong)?;
+    let cells = u32::from_le_bytes([c0, c1, c2, c3]);
+    let (heights, rest) = rest
+        .split_at_checked(cells.count_ones() as usize)
+        .ok_or(wrong)?;
+    let record = HeightRecord {
+        tile: Tile { x: x & 63, y },
+        south: x & 128 != 0,
+        fresh: x & 64 != 0,
+        cells,
+        heights: heights.iter().map(|&height| Height(height)).collect(),
+    };
+    let inside = record.tile.inside(extent.width, extent.height);
+    if y > 63 || cells == 0 || record.tile_cells() & !inside != 0 {
+        return Err(wrong);
+    }
+    Ok((record, rest))
+}
+
+#[cfg(test)]
+mod tests;

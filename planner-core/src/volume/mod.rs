@@ -1,0 +1,289 @@
+//! What a robot knows of a box of voxels: several surfaces in one column, as under
+//! bridges and in rooms.
+//!
+//! Two bits a voxel, on 8×8 tiles of each level: known, occupied. Knowledge only
+//! grows, and where two robots disagree *occupied* wins, so merging is commutative,
+//! associative and idempotent. Outside of the box everything counts as known; nothing
+//! is there, and nothing flies there.
+
+mod layer;
+mod sight;
+
+pub(crate) use layer::Layer;
+pub use sight::in_sight;
+
+use core::fmt;
+
+use crate::cell::{Cell, Extent};
+use crate::surface::{Tile, neighbours_of};
+
+/// One cube of a box. The unit is the cube's side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Voxel {
+    /// East.
+    pub x: i16,
+    /// South.
+    pub y: i16,
+    /// Up; 0 is the lowest level.
+    pub z: i16,
+}
+
+impl Voxel {
+    /// The voxel at column `x`, row `y`, level `z`.
+    pub const fn new(x: i16, y: i16, z: i16) -> Self {
+        Self { x, y, z }
+    }
+
+    /// The six voxels that share a face with this one.
+    pub const fn beside(self) -> [Self; 6] {
+        let Self { x, y, z } = self;
+        [
+            Self::new(x.saturating_add(1), y, z),
+            Self::new(x, y.saturating_add(1), z),
+            Self::new(x.saturating_sub(1), y, z),
+            Self::new(x, y.saturating_sub(1), z),
+            Self::new(x, y, z.saturating_add(1)),
+            Self::new(x, y, z.saturating_sub(1)),
+        ]
+    }
+
+    /// Squared Euclidean distance.
+    pub const fn distance_squared(self, other: Self) -> u32 {
+        let dx = self.x.abs_diff(other.x) as u32;
+        let dy = self.y.abs_diff(other.y) as u32;
+        let dz = self.z.abs_diff(other.z) as u32;
+        dx.saturating_mul(dx)
+            .saturating_add(dy.saturating_mul(dy))
+            .saturating_add(dz.saturating_mul(dz))
+    }
+
+    /// Its column.
+    pub const fn cell(self) -> Cell {
+        Cell::new(self.x, self.y)
+    }
+}
+
+/// What is known of a voxel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Content {
+    /// Nothing.
+    Unknown,
+    /// Nothing is there.
+    Free,
+    /// Something is there.
+    Occupied,
+}
+
+/// A tile of one level: the unit in which maps travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VoxelPatch {
+    /// Which tile.
+    pub tile: Tile,
+    /// Of which level.
+    pub z: u8,
+    /// Its known voxels.
+    pub known: u64,
+    /// Those of them that are occupied.
+    pub occupied: u64,
+}
+
+/// The box does not fit into the number of tiles and levels that its type has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DoesNotFit;
+
+impl fmt::Display for DoesNotFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the box does not fit into the map's tiles and levels")
+    }
+}
+
+impl core::error::Error for DoesNotFit {}
+
+/// A map of at most 8·`TW` × 8·`TH` × `L` voxels: 16 bytes for each tile of a level,
+/// 6.4 KB for 40×40×16 voxels.
+#[derive(Clone, Debug)]
+pub struct Volume<const TW: usize, const TH: usize, const L: usize> {
+    extent: Extent,
+    levels: u8,
+    known: Layer<TW, TH, L>,
+    occupied: Layer<TW, TH, L>,
+    known_voxels: u32,
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
+    /// A box of `extent` columns and `levels` levels with nothing known.
+    ///
+    /// # Errors
+    /// The box is larger than the map.
+    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+        const {
+            assert!(
+                TW <= 64 && TH <= 64 && L <= 255,
+                "at most 64×64 tiles, 255 levels"
+            )
+        }
+        if extent.width as usize > 8 * TW || extent.height as usize > 8 * TH || levels as usize > L
+        {
+            return Err(DoesNotFit);
+        }
+        Ok(Self {
+            extent,
+            levels,
+            known: Layer::EMPTY,
+            occupied: Layer::EMPTY,
+            known_voxels: 0,
+        })
+    }
+
+    /// Size on the ground plan.
+    pub const fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Number of levels.
+    pub const fn levels(&self) -> u8 {
+        self.levels
+    }
+
+    /// Number of known voxels.
+    pub const fn known_voxels(&self) -> u32 {
+        self.known_voxels
+    }
+
+    /// Whether `voxel` lies in the box.
+    pub const fn contains(&self, voxel: Voxel) -> bool {
+        voxel.z >= 0 && voxel.z < self.levels as i16 && self.extent.contains(voxel.cell())
+    }
+
+    /// What is known of `voxel`; outside of the box it is free. Cost: two reads.
+    pub fn content(&self, voxel: Voxel) -> Content {
+        if !self.contains(voxel) {
+            Content::Free
+        } else if self.occupied.get(voxel) {
+            Content::Occupied
+        } else if self.known.get(voxel) {
+            Content::Free
+        } else {
+            Content::Unknown
+        }
+    }
+
+    /// Learns one voxel; says whether that was news. Voxels outside are ignored.
+    pub fn learn(&mut self, voxel: Voxel, occupied: bool) -> bool {
+        let Some(tile) = Tile::of(voxel.cell()).filter(|_| self.contains(voxel)) else {
+            return false;
+        };
+        let bit = 1 << Tile::bit(voxel.cell());
+        self.merge(&VoxelPatch {
+            tile,
+            z: voxel.z as u8,
+            known: bit,
+            occupied: if occupied { bit } else { 0 },
+        })
+    }
+
+    /// Everything known of a tile of a level, as it travels.
+    pub fn patch(&self, tile: Tile, z: u8) -> VoxelPatch {
+        VoxelPatch {
+            tile,
+            z,
+            known: self.known.word(tile, z),
+            occupied: self.occupied.word(tile, z),
+        }
+    }
+
+    /// Joins `patch` into the map; says whether anything was new. Voxels outside are
+    /// ignored. Cost: one tile of a level.
+    pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
+        let VoxelPatch { tile, z, .. } = *patch;
+        let inside = self.inside(tile, z);
+        let known = (patch.known | patch.occupied) & inside & !self.known.word(tile, z);
+        let occupied = patch.occupied & inside & !self.occupied.word(tile, z);
+        self.known.add(tile, z, known);
+        self.occupied.add(tile, z, occupied);
+        self.known_voxels = self.known_voxels.saturating_add(known.count_ones());
+        known | occupied != 0
+    }
+
+    /// Whether a robot may be at `voxel`: it is free, and so is every voxel that shares
+    /// a face with it. Cost: 14 reads.
+    pub fn is_pose(&self, voxel: Voxel) -> bool {
+        let is_free = |voxel| self.content(voxel) == Content::Free;
+        self.contains(voxel) && is_free(voxel) && voxel.beside().into_iter().all(is_free)
+    }
+
+    /// Those of a tile of a level. Cost: 14 words.
+    pub(crate) fn poses(&self, tile: Tile, z: u8) -> u64 {
+        let bad = |tile: Option<Tile>, z: Option<u8>| match (tile, z) {
+            (Some(tile), Some(z)) => {
+                self.inside(tile, z) & !(self.known.word(tile, z) & !self.occupied.word(tile, z))
+            }
+            _ => 0,
+        };
+        let here = bad(Some(tile), Some(z));
+        let around = around(tile).map(|tile| bad(tile, Some(z)));
+        let above = bad(Some(tile), z.checked_add(1));
+        let below = bad(Some(tile), z.checked_sub(1));
+        self.inside(tile, z) & !(here | neighbours_of(here, around) | above | below)
+    }
+
+    /// The voxels of a tile of a level that lie in the box.
+    pub(crate) fn inside(&self, tile: Tile, z: u8) -> u64 {
+        if z < self.levels {
+            tile.inside(self.extent.width, self.extent.height)
+        } else {
+            0
+        }
+    }
+
+    /// The tile and level behind these, and round again.
+    pub fn after(&self, tile: Tile, z: u8) -> (Tile, u8) {
+        let (width, height) = (
+            self.extent.width.div_ceil(8) as u8,
+            self.extent.height.div_ceil(8) as u8,
+        );
+        if tile.x.saturating_add(1) < width {
+            (
+                Tile {
+                    x: tile.x.saturating_add(1),
+                    y: tile.y,
+                },
+                z,
+            )
+        } else if tile.y.saturating_add(1) < height {
+            (
+                Tile {
+                    x: 0,
+                    y: tile.y.saturating_add(1),
+                },
+                z,
+            )
+        } else if z.saturating_add(1) < self.levels {
+            (Tile { x: 0, y: 0 }, z.saturating_add(1))
+        } else {
+            (Tile { x: 0, y: 0 }, 0)
+        }
+    }
+}
+
+/// The tiles north, east, south and west of `tile`.
+pub(crate) const fn around(tile: Tile) -> [Option<Tile>; 4] {
+    const fn at(x: Option<u8>, y: Option<u8>) -> Option<Tile> {
+        match (x, y) {
+            (Some(x), Some(y)) => Some(Tile { x, y }),
+            _ => None,
+        }
+    }
+    let Tile { x, y } = tile;
+    [
+        at(Some(x), y.checked_sub(1)),
+        at(x.checked_add(1), Some(y)),
+        at(Some(x), y.checked_add(1)),
+        at(x.checked_sub(1), Some(y)),
+    ]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,99 @@
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+
+type Map = Volume<2, 2, 6>;
+
+fn voxel() -> impl Strategy<Value = Voxel> {
+    (-1i16..14, -1i16..12, -1i16..7).prop_map(|(x, y, z)| Voxel::new(x, y, z))
+}
+
+fn map() -> Map {
+    Map::new(Extent::new(13, 11), 6).unwrap()
+}
+
+fn all() -> impl Iterator<Item = Voxel> {
+    (-1..7).flat_map(|z| (-1..12).flat_map(move |y| (-1..14).map(move |x| Voxel::new(x, y, z))))
+}
+
+proptest! {
+    #[test]
+    fn poses_of_a_tile_are_those_of_its_voxels(
+        learnt in prop::collection::vec((voxel(), prop::bool::weighted(0.1)), 0..1500),
+    ) {
+        let mut map = map();
+        for &(voxel, occupied) in &learnt {
+            map.learn(voxel, occupied);
+        }
+        for voxel in all().filter(|&voxel| map.contains(voxel)) {
+            let tile = Tile::of(voxel.cell()).unwrap();
+            let word = map.poses(tile, voxel.z as u8);
+            prop_assert_eq!(word >> Tile::bit(voxel.cell()) & 1 == 1, map.is_pose(voxel));
+        }
+        let known: std::collections::BTreeSet<_> =
+            learnt.iter().map(|l| l.0).filter(|&v| map.contains(v)).collect();
+        prop_assert_eq!(map.known_voxels() as usize, known.len());
+    }
+
+    /// Any order and any repetition of the same patches gives the same map.
+    #[test]
+    fn merging_is_a_join(
+        learnt in prop::collection::vec((voxel(), any::<bool>(), 0usize..3), 0..600),
+        order in Just([0usize, 1, 2, 1]).prop_shuffle(),
+    ) {
+        let mut whole = map();
+        let mut parts = [map(), map(), map()];
+        for &(voxel, occupied, part) in &learnt {
+            whole.learn(voxel, occupied);
+            parts[part].learn(voxel, occupied);
+        }
+        let mut merged = map();
+        for part in order {
+            let (mut tile, mut z) = (Tile { x: 0, y: 0 }, 0);
+            for _ in 0..2 * 2 * 6 {
+                merged.merge(&parts[part].patch(tile, z));
+                (tile, z) = merged.after(tile, z);
+            }
+        }
+        for voxel in all() {
+            prop_assert_eq!(merged.content(voxel), whole.content(voxel));
+        }
+        prop_assert_eq!(merged.known_voxels(), whole.known_voxels());
+    }
+
+    /// Sight is mutual, and what it asks for lies near the line.
+    #[test]
+    fn sight_is_symmetric(
+        from in voxel(), to in voxel(), walls in prop::collection::hash_set(voxel(), 0..200),
+    ) {
+        let is_clear = |voxel: Voxel| !walls.contains(&voxel);
+        prop_assert_eq!(in_sight(from, to, is_clear), in_sight(to, from, is_clear));
+        in_sight(from, to, |at| {
+            let d = |v: Voxel| [f64::from(v.x - from.x), f64::from(v.y - from.y), f64::from(v.z - from.z)];
+            let (p, q) = (d(at), d(to));
+            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let t = dot(p, q) / dot(q, q).max(1e-9);
+            let off: Vec<f64> = (0..3).map(|i| (p[i] - t * q[i]).abs()).collect();
+            assert!(off.iter().all(|&o| o <= 1.0), "{from:?} {to:?} {at:?}");
+            true
+        });
+    }
+}
+
+#[test]
+fn sight_does_not_slip_between_walls() {
+    let (from, to) = (Voxel::new(0, 0, 0), Voxel::new(1, 1, 0));
+    let one = |wall: Voxel| move |at: Voxel| at != wall;
+    assert!(in_sight(from, to, one(Voxel::new(1, 0, 0))));
+    assert!(in_sight(from, to, one(Voxel::new(0, 1, 0))));
+    assert!(!in_sight(from, to, |at| at != Voxel::new(1, 0, 0)
+        && at != Voxel::new(0, 1, 0)));
+    assert!(!in_sight(
+        from,
+        Voxel::new(4, 2, 2),
+        one(Voxel::new(2, 1, 1))
+    ));
+    assert!(in_sight(from, from, |_| false));
+}

@@ -1,0 +1,189 @@
+//! The nearest pose far away that is not done: a wave over all poses, in slices.
+
+use super::{VoxelSurvey, WAY};
+use crate::surface::{Tile, neighbours_of};
+use crate::volume::{Layer, Volume, Voxel, around};
+
+/// Words that the wave washes in a step.
+const SLICE: u32 = 1024;
+
+/// Poses whose view is looked at in a step.
+const VIEWS: u32 = 8;
+
+/// What a step of the search came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Found {
+    /// The way there lies ready.
+    Way,
+    /// Nothing yet.
+    Searching,
+    /// Every pose that can be reached is done.
+    Nothing,
+}
+
+/// Where the search stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    Idle,
+    /// The wave spreads; the number of known voxels when it began.
+    Wave {
+        known: u32,
+    },
+    /// The way is followed back from the goal, and is here.
+    Back(Voxel),
+}
+
+/// A wave from the robot over all poses. A pose's distance is kept modulo 3.
+#[derive(Clone, Debug)]
+pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
+    stage: Stage,
+    layers: [Layer<TW, TH, L>; 3],
+    /// Number modulo 3 of the layer that is made.
+    layer: usize,
+    /// Where the look at all words for it stands.
+    cursor: (Tile, u8),
+    /// Whether anything has become wet in it.
+    grows: bool,
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
+    pub(super) const fn new() -> Self {
+        Self {
+            stage: Stage::Idle,
+            layers: [Layer::EMPTY, Layer::EMPTY, Layer::EMPTY],
+            layer: 1,
+            cursor: (Tile { x: 0, y: 0 }, 0),
+            grows: false,
+        }
+    }
+
+    pub(super) fn is_idle(&self) -> bool {
+        self.stage == Stage::Idle
+    }
+
+    fn begin(&mut self, from: Voxel, known: u32) {
+        *self = Self::new();
+        self.stage = Stage::Wave { known };
+        let [first, ..] = &mut self.layers;
+        first.set(from);
+    }
+
+    /// Distance of `voxel` from the robot modulo 3, if it is wet.
+    fn distance(&self, voxel: Voxel) -> Option<usize> {
+        self.layers.iter().position(|layer| layer.get(voxel))
+    }
+
+    /// Lets the wave into the word at the cursor; gives what became wet.
+    fn wash(&mut self, volume: &Volume<TW, TH, L>) -> u64 {
+        let (tile, z) = self.cursor;
+        let wet = self
+            .layers
+            .iter()
+            .fold(0, |wet, layer| wet | layer.word(tile, z));
+        let Some(before) = self.layers.get((self.layer + 2) % 3) else {
+            return 0;
+        };
+        let sides = around(tile).map(|tile| tile.map_or(0, |tile| before.word(tile, z)));
+        let above = z.checked_add(1).map_or(0, |z| before.word(tile, z));
+        let below = z.checked_sub(1).map_or(0, |z| before.word(tile, z));
+        let reached = neighbours_of(before.word(tile, z), sides) | above | below;
+        if reached == 0 {
+            return 0;
+        }
+        let new = reached & !wet & volume.poses(tile, z);
+        if let Some(layer) = self.layers.get_mut(self.layer) {
+            layer.add(tile, z, new);
+        }
+        self.grows |= new != 0;
+        new
+    }
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
+    /// One step of the search. The robot stays where it is meanwhile.
+    pub(super) fn look_far(&mut self) -> Found {
+        match self.far.stage {
+            Stage::Idle => {
+                self.far.begin(self.position, self.volume.known_voxels());
+                Found::Searching
+            }
+            Stage::Wave { known } => self.spread(known),
+            Stage::Back(at) => self.follow_back(at),
+        }
+    }
+
+    fn spread(&mut self, known: u32) -> Found {
+        let mut views = 0;
+        for _ in 0..SLICE {
+            self.work = self.work.saturating_add(1);
+            self.far.wash(&self.volume);
+            let (tile, z) = self.far.cursor;
+            let wet = self
+                .far
+                .layers
+                .get(self.far.layer)
+                .map_or(0, |l| l.word(tile, z));
+            let open = wet & !self.done.word(tile, z);
+            if open != 0 {
+                // The cursor stays until all of them are done.
+                if views == VIEWS {
+                    return Found::Searching;
+                }
+                views += 1;
+                let cell = tile.cell(open.trailing_zeros());
+                let pose = Voxel::new(cell.x, cell.y, i16::from(z));
+                if self.gain(pose) > 0 {
+                    self.goal = pose;
+                    self.way.clear();
+                    self.far.stage = Stage::Back(pose);
+                    return Found::Searching;
+                }
+                continue;
+            }
+            self.far.cursor = self.volume.after(tile, z);
+            if self.far.cursor == (Tile { x: 0, y: 0 }, 0) {
+                if !self.far.grows {
+                    // What was learnt meanwhile may have opened a way.
+                    self.far.stage = Stage::Idle;
+                    return if known == self.volume.known_voxels() {
+                        Found::Nothing
+                    } else {
+                        Found::Searching
+                    };
+                }
+                self.far.grows = false;
+                self.far.layer = (self.far.layer + 1) % 3;
+            }
+        }
+        Found::Searching
+    }
+
+    /// Goes back from the goal to the robot; of a long way, its beginning is kept.
+    fn follow_back(&mut self, from: Voxel) -> Found {
+        let mut at = from;
+        for _ in 0..SLICE {
+            self.work = self.work.saturating_add(1);
+            if at == self.position {
+                self.far.stage = Stage::Idle;
+                return Found::Way;
+            }
+            if self.way.len() == WAY {
+                self.way.remove(0);
+            }
+            let _ = self.way.push(at);
+            let distance = self.far.distance(at).unwrap_or(0);
+            let before = at
+                .beside()
+                .into_iter()
+                .find(|&voxel| self.far.distance(voxel) == Some((distance + 2) % 3));
+            let Some(before) = before else {
+                // The robot was moved: search again.
+                self.far.stage = Stage::Idle;
+                return Found::Searching;
+            };
+            at = before;
+        }
+        self.far.stage = Stage::Back(at);
+        Found::Searching
+    }
+}

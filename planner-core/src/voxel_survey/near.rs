@@ -1,0 +1,139 @@
+//! The poses around the robot: where a short flight shows the most.
+
+use heapless::Vec;
+
+use super::{Action, VoxelSurvey};
+use crate::volume::Voxel;
+
+/// Poses around the robot that are considered.
+const POSES: usize = 512;
+
+/// Those of them whose view is looked at in one step.
+const VIEWS: usize = 24;
+
+/// Half of the side of the window that they lie in.
+const WINDOW: i16 = 16;
+
+/// Steps that a flight costs beside its length.
+const START: u32 = 2;
+
+/// A pose that can be reached, and the number of the one before it.
+#[derive(Clone, Copy)]
+struct Place {
+    at: Voxel,
+    before: u16,
+    steps: u16,
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
+    /// A flight to the pose near by that shows the most for its distance; `None` if
+    /// all poses near by are done.
+    pub(super) fn look_near(&mut self) -> Option<Action> {
+        let places = self.places();
+        let open = |place: &&Place| !self.done.get(place.at);
+        let number = places.iter().filter(open).count();
+        if number == 0 {
+            return None;
+        }
+        let stride = number.div_ceil(VIEWS);
+        let chosen: Vec<(u16, Place), VIEWS> = (0u16..)
+            .zip(&places)
+            .filter(|(_, place)| !self.done.get(place.at))
+            .step_by(stride)
+            .map(|(number, &place)| (number, place))
+            .take(VIEWS)
+            .collect();
+        let mut best: Option<(f32, u16)> = None;
+        for (number, place) in chosen {
+            let gain = self.gain(place.at);
+            if gain == 0 {
+                continue;
+            }
+            let own = place.at.distance_squared(self.position);
+            let is_nearer = |voxel: Voxel| place.at.distance_squared(voxel) < own;
+            let is_rivals = self
+                .rivals
+                .iter()
+                .any(|&(_, at, goal)| is_nearer(at) || is_nearer(goal));
+            let share = if is_rivals { 0.25 } else { 1.0 };
+            let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
+            if best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, number));
+            }
+        }
+        let Some((_, mut number)) = best else {
+            // The views looked at showed nothing: the others are looked at next.
+            return Some(Action::Hover);
+        };
+        self.way.clear();
+        if let Some(goal) = places.get(usize::from(number)) {
+            self.goal = goal.at;
+        }
+        for _ in 0..POSES {
+            let Some(place) = places.get(usize::from(number)) else {
+                break;
+            };
+            if place.steps == 0 {
+                break;
+            }
+            if self.way.is_full() {
+                self.way.remove(0);
+            }
+            let _ = self.way.push(place.at);
+            number = place.before;
+        }
+        Some(self.follow().unwrap_or(Action::Hover))
+    }
+
+    /// The poses around the robot, nearest first, the robot's own in front.
+    fn places(&mut self) -> Vec<Place, POSES> {
+        let mut places = Vec::new();
+        // One bit for each voxel of the window that was looked at.
+        let mut seen = [[0u32; 2 * WINDOW as usize]; 2 * WINDOW as usize];
+        let here = self.position;
+        let mut visit = move |at: Voxel| {
+            let index =
+                |a: i16, b: i16| usize::try_from(a.saturating_sub(b).saturating_add(WINDOW));
+            let (Ok(x), Ok(y), Ok(z)) = (
+                index(at.x, here.x),
+                index(at.y, here.y),
+                index(at.z, here.z),
+            ) else {
+                return false;
+            };
+            let bit = 1u32.checked_shl(x as u32).unwrap_or(0);
+            let Some(row) = seen.get_mut(z).and_then(|level| level.get_mut(y)) else {
+                return false;
+            };
+            let is_new = bit != 0 && *row & bit == 0;
+            *row |= bit;
+            is_new
+        };
+        visit(here);
+        let _ = places.push(Place {
+            at: here,
+            before: 0,
+            steps: 0,
+        });
+        for number in 0..POSES {
+            let Some(&place) = places.get(number) else {
+                break;
+            };
+            for at in place.at.beside() {
+                if !visit(at) {
+                    continue;
+                }
+                self.work = self.work.saturating_add(1);
+                if self.volume.is_pose(at) {
+                    // The nearest ones are kept.
+                    let _ = places.push(Place {
+                        at,
+                        before: number as u16,
+                        steps: place.steps.saturating_add(1),
+                    });
+                }
+            }
+        }
+        places
+    }
+}

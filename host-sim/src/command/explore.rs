@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw;
+use host_sim::fleet::{Arrival, Death};
 use host_sim::measured::Measured;
 use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
@@ -16,8 +17,8 @@ use host_sim::run::{self, Here, Host, Options, Progress, Scenario};
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
 use indicatif::{ProgressBar, ProgressStyle};
-use planner_core::Cell;
 use planner_core::radio::MAX_LEN;
+use planner_core::{Cell, RobotId};
 
 use super::Done;
 use super::folder::Folder;
@@ -69,6 +70,12 @@ pub(crate) struct Explore {
     /// A cell holds at most one robot.
     #[arg(long)]
     solid: bool,
+    /// ROBOT@TICK: this robot dies before this tick. May be given again.
+    #[arg(long, value_name = "ROBOT@TICK", value_parser = parse_moment)]
+    kill: Vec<(RobotId, u32)>,
+    /// ROBOT@TICK: this robot arrives at its start in this tick. May be given again.
+    #[arg(long, value_name = "ROBOT@TICK", value_parser = parse_moment)]
+    arrive: Vec<(RobotId, u32)>,
     /// Give up after this many ticks. Default: 1000 and 8 for each reachable
     /// cell, for bmilrv 100.
     #[arg(long, value_name = "T")]
@@ -207,6 +214,12 @@ impl Explore {
         scenario.seed = self.seed;
         scenario.solid = self.solid;
         scenario.max_ticks = self.max_ticks.unwrap_or(scenario.max_ticks);
+        let deaths = self.kill.iter();
+        scenario.faults.deaths = deaths.map(|&(robot, tick)| Death { robot, tick }).collect();
+        let arrivals = self.arrive.iter();
+        scenario.faults.arrivals = arrivals
+            .map(|&(robot, tick)| Arrival { robot, tick })
+            .collect();
         scenario.check()?;
         Ok(scenario)
     }
@@ -247,6 +260,12 @@ pub(super) fn parse_share(text: &str) -> Result<f64, String> {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("expected a share from 0 (nothing) to 1 (everything), for example 0.6".into()),
     }
+}
+
+fn parse_moment(text: &str) -> Result<(RobotId, u32), &'static str> {
+    text.split_once('@')
+        .and_then(|(robot, tick)| Some((RobotId(robot.parse().ok()?), tick.parse().ok()?)))
+        .ok_or("expected ROBOT@TICK, for example 3@40")
 }
 
 fn parse_reach(text: &str) -> Result<Reach, String> {

@@ -16,7 +16,7 @@ mod trace;
 pub use args::{Summary, SurveyArgs};
 pub use figures::figures;
 pub use mapped::octree;
-pub use run::run;
+pub use run::{Stepping, open, run};
 pub use scenario::{Kill, Planner, Scenario};
 pub use sensor::look;
 pub use terrain::Terrain;

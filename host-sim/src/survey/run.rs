@@ -1,5 +1,7 @@
 //! A run: sense, share, decide in turn, fly; until every living robot has stopped.
 
+use std::sync::Arc;
+#[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
@@ -18,13 +20,30 @@ use super::trace::{Record, Safety, Trace};
 
 /// Runs `scenario` over `terrain`.
 pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
+    let mut run = open(Arc::new(terrain.clone()), scenario)?;
+    while run.step() {}
+    Ok(run.finish())
+}
+
+/// A run before its first step, for whoever wants to watch.
+pub fn open(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Box<dyn Stepping>, SetupError> {
     let Extent { width, height } = terrain.extent();
-    match width.max(height).div_ceil(8) {
-        0..=4 => run_on::<4>(terrain, scenario),
-        5..=13 => run_on::<13>(terrain, scenario),
-        14..=25 => run_on::<25>(terrain, scenario),
-        _ => run_on::<64>(terrain, scenario),
-    }
+    Ok(match width.max(height).div_ceil(8) {
+        0..=4 => Box::new(Simulation::<4>::new(terrain, scenario)?),
+        5..=13 => Box::new(Simulation::<13>::new(terrain, scenario)?),
+        14..=25 => Box::new(Simulation::<25>::new(terrain, scenario)?),
+        _ => Box::new(Simulation::<64>::new(terrain, scenario)?),
+    })
+}
+
+/// A run that goes on step by step.
+pub trait Stepping {
+    /// One step of the fleet; false if the run is over.
+    fn step(&mut self) -> bool;
+    /// What has happened so far.
+    fn trace(&self) -> &Trace;
+    /// What happened.
+    fn finish(self: Box<Self>) -> Trace;
 }
 
 enum Pilot<const T: usize> {
@@ -56,15 +75,9 @@ struct Robot<const T: usize> {
     stopped: bool,
 }
 
-fn run_on<const T: usize>(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
-    let mut sim = Simulation::<T>::new(terrain, scenario)?;
-    while sim.step() {}
-    Ok(sim.trace)
-}
-
-struct Simulation<'a, const T: usize> {
-    terrain: &'a Terrain,
-    scenario: &'a Scenario,
+struct Simulation<const T: usize> {
+    terrain: Arc<Terrain>,
+    scenario: Scenario,
     robots: Vec<Robot<T>>,
     /// What anybody has seen.
     union: Box<Surface<T, T>>,
@@ -73,10 +86,24 @@ struct Simulation<'a, const T: usize> {
     trace: Trace,
 }
 
-impl<'a, const T: usize> Simulation<'a, T> {
-    fn new(terrain: &'a Terrain, scenario: &'a Scenario) -> Result<Self, SetupError> {
+impl<const T: usize> Stepping for Simulation<T> {
+    fn step(&mut self) -> bool {
+        self.advance()
+    }
+
+    fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    fn finish(self: Box<Self>) -> Trace {
+        self.trace
+    }
+}
+
+impl<const T: usize> Simulation<T> {
+    fn new(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Self, SetupError> {
         let extent = terrain.extent();
-        let starts = start_positions(terrain, scenario);
+        let starts = start_positions(&terrain, scenario);
         let robots = starts
             .iter()
             .copied()
@@ -94,7 +121,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             .collect::<Result<_, SetupError>>()?;
         Ok(Self {
             terrain,
-            scenario,
+            scenario: scenario.clone(),
             robots,
             union: Box::new(Surface::new(extent)?),
             faults: ChaCha8Rng::seed_from_u64(scenario.seed),
@@ -104,7 +131,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
     }
 
     /// One step of the fleet; says whether there is another.
-    fn step(&mut self) -> bool {
+    fn advance(&mut self) -> bool {
         for kill in &self.scenario.kills {
             if kill.step == self.now
                 && let Some(robot) = self.robots.get_mut(kill.robot)
@@ -139,7 +166,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
 
     fn sense(&mut self) {
         for robot in self.robots.iter_mut().filter(|robot| robot.awake) {
-            let columns = look(self.terrain, robot.at, self.scenario.limits.range);
+            let columns = look(&self.terrain, robot.at, self.scenario.limits.range);
             for &column in &columns {
                 if self.union.learn(column) {
                     self.trace.found.push((self.now, column));
@@ -188,6 +215,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
     fn act(&mut self, i: usize, (orders, cost): &(Vec<Option<planner_core::Cell>>, u32)) {
+        #[cfg(not(target_arch = "wasm32"))]
         let began = Instant::now();
         if let Pilot::Follower(follower) = &mut self.robots[i].pilot
             && let Some(&target) = orders.get(i)
@@ -196,6 +224,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
         }
         let pilot = self.robots[i].pilot.get_mut();
         let action = pilot.tick();
+        #[cfg(not(target_arch = "wasm32"))]
         self.trace
             .decision_nanoseconds
             .push(began.elapsed().as_nanos() as u64);
@@ -205,7 +234,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             if !refused {
                 self.trace
                     .safety
-                    .check_flight(self.terrain, &self.scenario.limits, from, to);
+                    .check_flight(&self.terrain, &self.scenario.limits, from, to);
                 self.robots[i].at = to;
             }
             let motion = if refused {

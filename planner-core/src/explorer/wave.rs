@@ -162,6 +162,11 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
     }
 
+    /// The cells of a tile that a wave has reached.
+    pub(crate) fn reached(&self, at: TileIndex) -> u64 {
+        self.tile(at).reached
+    }
+
     /// Whether a wave has reached the cell.
     pub(crate) fn is_reached(&self, cell: Cell) -> bool {
         TileIndex::of(cell).is_some_and(|(at, bit)| self.tile(at).reached & bit != 0)

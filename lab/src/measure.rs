@@ -29,7 +29,9 @@ pub fn measure(mut app: App) -> String {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0))),
             ..RawInput::default()
         };
-        let output = context.run_ui(input, |ui| app.ui(ui));
+        let mut output = context.run_ui(input, |ui| app.ui(ui));
+        // Nobody wants the textures.
+        output.textures_delta.clear();
         let shapes = context.tessellate(output.shapes, output.pixels_per_point);
         frames.push(clock.seconds());
         triangles = triangles.max(shapes.iter().map(count).sum());

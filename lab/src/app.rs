@@ -134,13 +134,13 @@ impl App {
     }
 
     /// Starts over with this setup; one that cannot be run changes nothing but the
-    /// notice.
-    pub fn set(&mut self, setup: Setup) {
-        self.set_at(setup, None);
+    /// notice. Says whether it runs.
+    pub fn set(&mut self, setup: Setup) -> bool {
+        self.set_at(setup, None)
     }
 
     /// As [`set`](Self::set), and goes on from a tick.
-    fn set_at(&mut self, setup: Setup, tick: Option<u32>) {
+    fn set_at(&mut self, setup: Setup, tick: Option<u32>) -> bool {
         let of = |planner: Option<PlannerKind>| Setup {
             planner: planner.unwrap_or(setup.planner),
             ..setup.clone()
@@ -150,7 +150,10 @@ impl App {
         for setup in wanted.into_iter().flatten() {
             match setup.scenario().and_then(Watch::new) {
                 Ok(watch) => runs.push(self.shown(setup, watch, tick)),
-                Err(error) => return self.fail(error),
+                Err(error) => {
+                    self.fail(error);
+                    return false;
+                }
             }
         }
         if self.setup.map != setup.map {
@@ -167,6 +170,7 @@ impl App {
         self.survey = None;
         self.notice = None;
         self.due = 0.0;
+        true
     }
 
     fn shown(&mut self, setup: Setup, watch: Watch, target: Option<u32>) -> Shown {

@@ -13,8 +13,6 @@ pub mod decisions;
 pub mod export;
 pub mod ground;
 pub mod maps;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod measure;
 mod pack;
 mod panels;
 pub mod platform;

@@ -15,10 +15,6 @@ mod window {
         /// The scenario: the part of the page's address behind `#`.
         #[arg(long, value_name = "ADDRESS", default_value = "")]
         scenario: String,
-        /// Runs the scenario without a window as fast as it can be shown, and tells how
-        /// many ticks a second that is.
-        #[arg(long)]
-        measure: bool,
     }
 
     pub(crate) fn main() -> ExitCode {
@@ -29,15 +25,6 @@ mod window {
                 Ok(bytes) => app.open(file, &bytes),
                 Err(error) => app.fail(format!("{file}: {error}")),
             }
-        }
-        if arguments.measure {
-            let report = app.report();
-            if !report.error.is_empty() {
-                eprintln!("error: {}", report.error);
-                return ExitCode::from(2);
-            }
-            println!("{}", lab::measure::measure(app));
-            return ExitCode::SUCCESS;
         }
         let options = eframe::NativeOptions {
             viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]),

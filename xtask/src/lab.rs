@@ -22,7 +22,8 @@ pub(crate) fn build_page() -> Result<String> {
     let built = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     let dist = root().join("dist");
     command(wasm_bindgen)
-        .args(["--target=web", "--no-typescript", "--out-name=lab", "--out-dir"])
+        .args(["--target=web", "--no-typescript", "--remove-name-section"])
+        .args(["--out-name=lab", "--out-dir"])
         .arg(&dist)
         .arg(built.join(TARGET).join("web/lab.wasm"))
         .run()?;

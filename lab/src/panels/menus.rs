@@ -39,10 +39,8 @@ impl App {
         title(ui, "Radio");
         radio(ui, &mut setup);
         if (&setup, self.rival) != (&before.0, before.1) {
-            self.set(setup);
-            if self.runs.iter().any(|run| run.setup != self.setup) && self.rival.is_none() {
-                // Refused: the menus go back to what runs.
-                self.setup = before.0;
+            if !self.set(setup) {
+                self.rival = before.1;
             }
             self.playing = true;
         }

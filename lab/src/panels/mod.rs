@@ -39,7 +39,7 @@ impl App {
         if self.notice.is_some() {
             Panel::top("notice").show(ui, |ui| self.notice(ui));
         }
-        Panel::bottom("time").show(ui, |ui| self.time(ui, is_narrow));
+        Panel::bottom("time").show(ui, |ui| self.time(ui));
         if is_narrow {
             self.sheet(ui);
         } else {
@@ -181,9 +181,20 @@ impl App {
                 ui.selectable_value(&mut self.shows_world, true, "real world");
             });
         }
-        let stacked = ui.available_width() < ui.available_height();
         let (count, room) = (wanted.len() as f32, ui.available_size());
         let gap = ui.spacing().item_spacing;
+        // Beside each other or one above the other: as the maps get larger.
+        let extent = self
+            .runs
+            .first()
+            .map(|run| run.watch.scenario().world.extent());
+        let side = |room: egui::Vec2| {
+            extent.map_or(0.0, |extent| {
+                (room.x / f32::from(extent.width)).min((room.y - 20.0) / f32::from(extent.height))
+            })
+        };
+        let stacked =
+            side(egui::vec2(room.x, room.y / count)) > side(egui::vec2(room.x / count, room.y));
         let size = match stacked {
             true => egui::vec2(room.x, (room.y - gap.y * (count - 1.0)) / count),
             false => egui::vec2((room.x - gap.x * (count - 1.0)) / count, room.y),

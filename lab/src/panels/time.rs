@@ -5,13 +5,12 @@ use egui::{Slider, Ui};
 use crate::app::App;
 
 impl App {
-    pub(super) fn time(&mut self, ui: &mut Ui, is_narrow: bool) {
-        ui.horizontal_wrapped(|ui| {
+    pub(super) fn time(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
             let play = if self.playing { "Pause" } else { "Play" };
             if ui.button(play).on_hover_text("Space").clicked() {
                 self.play_or_pause();
             }
-            let flies = self.survey.is_some();
             if ui
                 .button("Tick")
                 .on_hover_text("One tick: right arrow")
@@ -29,7 +28,9 @@ impl App {
                 match &self.survey {
                     Some(survey) => self.fly(survey.setup.clone()),
                     None if self.runs.iter().any(|run| run.watch.is_replay()) => self.show(0),
-                    None => self.set(self.setup.clone()),
+                    None => {
+                        self.set(self.setup.clone());
+                    }
                 }
                 self.playing = true;
             }
@@ -39,15 +40,14 @@ impl App {
                     .max_decimals(0)
                     .text("ticks/s"),
             );
-            if flies {
-                return;
-            }
+        });
+        if self.survey.is_some() {
+            return;
+        }
+        ui.horizontal(|ui| {
             let last = self.last_tick();
             let mut shown = self.shown_tick();
-            ui.spacing_mut().slider_width = match is_narrow {
-                true => ui.available_width().min(260.0) - 90.0,
-                false => (ui.available_width() - 120.0).max(120.0),
-            };
+            ui.spacing_mut().slider_width = (ui.available_width() - 100.0).max(80.0);
             let slider = Slider::new(&mut shown, 0..=last.max(1)).text("tick");
             if ui.add(slider).changed() {
                 self.playing = false;

@@ -69,7 +69,10 @@ impl Browser {
 
     pub fn open(&self, url: &str) {
         // Also when only the part behind # differs, from scratch.
-        post(&format!("{}/url", self.session), &json!({"url": "about:blank"}));
+        post(
+            &format!("{}/url", self.session),
+            &json!({"url": "about:blank"}),
+        );
         post(&format!("{}/url", self.session), &json!({"url": url}));
     }
 
@@ -82,7 +85,10 @@ impl Browser {
     /// An attribute `data-NAME` of the page.
     pub fn data(&self, name: &str) -> String {
         let script = "return document.body.getAttribute('data-' + arguments[0])";
-        self.run(script, json!([name])).as_str().unwrap_or_default().to_owned()
+        self.run(script, json!([name]))
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
     }
 
     /// Waits until an attribute is as wanted, and returns it.
@@ -118,7 +124,10 @@ impl Browser {
 
     /// What the page and the browser have complained of.
     pub fn console(&self) -> Vec<String> {
-        let entries = post(&format!("{}/se/log", self.session), &json!({"type": "browser"}));
+        let entries = post(
+            &format!("{}/se/log", self.session),
+            &json!({"type": "browser"}),
+        );
         let entries = entries.as_array().cloned().unwrap_or_default();
         let severe = entries.iter().filter(|entry| entry["level"] == "SEVERE");
         severe.map(|entry| entry["message"].to_string()).collect()
@@ -183,7 +192,11 @@ fn answer(mut stream: TcpStream, folder: &Path) {
     let mut request = [0; 8192];
     let length = stream.read(&mut request).unwrap_or(0);
     let request = String::from_utf8_lossy(&request[..length]);
-    let path = request.split(' ').nth(1).unwrap_or("/").trim_start_matches('/');
+    let path = request
+        .split(' ')
+        .nth(1)
+        .unwrap_or("/")
+        .trim_start_matches('/');
     let path = if path.is_empty() { "index.html" } else { path };
     let kind = match path.rsplit('.').next() {
         Some("html") => "text/html",
@@ -199,5 +212,7 @@ fn answer(mut stream: TcpStream, folder: &Path) {
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {length}\r\nConnection: close\r\n\r\n"
     );
-    let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(&body));
+    let _ = stream
+        .write_all(head.as_bytes())
+        .and_then(|()| stream.write_all(&body));
 }

@@ -63,10 +63,16 @@ fn dropped_maps_are_explored_or_refused_with_a_sentence() {
 
     browser.drop_file("bad.txt", b"....\n..\n");
     let error = browser.wait("error", |error| !error.is_empty());
-    assert!(error.starts_with("bad.txt") && error.contains("row"), "{error}");
+    assert!(
+        error.starts_with("bad.txt") && error.contains("row"),
+        "{error}"
+    );
     assert_eq!(browser.data("map"), "office");
 
-    browser.drop_file("tiny.txt", b"##########\n#1.......#\n#.##.###.#\n#........#\n##########\n");
+    browser.drop_file(
+        "tiny.txt",
+        b"##########\n#1.......#\n#.##.###.#\n#........#\n##########\n",
+    );
     browser.wait("map", |map| map == "tiny");
     browser.wait("state", |state| state == "complete");
     assert_eq!(browser.data("error"), "");
@@ -89,12 +95,18 @@ fn a_bad_address_says_so() {
 #[ignore = "a measurement: cargo test -p lab --test page -- --ignored --nocapture crowd"]
 fn crowd() {
     let (page, browser) = (page(), Browser::start(1280, 800));
-    browser.open(&format!("{page}#map=generate:rooms:256x256:1&robots=100&start=random"));
+    browser.open(&format!(
+        "{page}#map=generate:rooms:256x256:1&robots=100&start=random"
+    ));
     let mut rates = Vec::new();
     browser.wait("state", |state| state == "running");
     for _ in 0..10 {
         std::thread::sleep(std::time::Duration::from_secs(2));
-        rates.push(format!("{} at tick {}", browser.data("frames-per-second"), browser.data("ticks")));
+        rates.push(format!(
+            "{} at tick {}",
+            browser.data("frames-per-second"),
+            browser.data("ticks")
+        ));
     }
     println!("frames a second: {}", rates.join(", "));
 }
@@ -108,7 +120,9 @@ fn pictures() {
     for (name, width, height) in [("laptop", 1280, 800), ("phone", 400, 800)] {
         let browser = Browser::start(width, height);
         browser.open(&page);
-        browser.wait("ticks", |ticks| ticks.parse().is_ok_and(|ticks: u32| ticks > 250));
+        browser.wait("ticks", |ticks| {
+            ticks.parse().is_ok_and(|ticks: u32| ticks > 250)
+        });
         let file = folder.join(format!("page-{name}.png"));
         std::fs::write(file, browser.picture()).unwrap();
     }

@@ -45,7 +45,12 @@ fn laptop_in_the_light() {
 
 #[test]
 fn laptop_in_the_dark_with_a_robot_selected() {
-    let mut harness = harness("map=generate:cave:64x48:4&robots=5", 1280.0, 800.0, Theme::Dark);
+    let mut harness = harness(
+        "map=generate:cave:64x48:4&robots=5",
+        1280.0,
+        800.0,
+        Theme::Dark,
+    );
     harness.state_mut().selected = Some(1);
     harness.state_mut().layers.owners = true;
     harness.state_mut().layers.radio = true;
@@ -96,7 +101,10 @@ fn keys_play_and_step() {
     assert_eq!(harness.state().shown_tick(), 2);
     harness.key_press(Key::ArrowLeft);
     harness.run();
-    assert_eq!((harness.state().shown_tick(), harness.state().last_tick()), (1, 2));
+    assert_eq!(
+        (harness.state().shown_tick(), harness.state().last_tick()),
+        (1, 2)
+    );
     harness.key_press(Key::Space);
     harness.run_steps(3);
     assert!(harness.state().playing);

@@ -46,7 +46,11 @@ impl TestRenderer for Painter {
         let scale = ctx.pixels_per_point();
         let size = ctx.content_rect().size() * scale;
         let mut screen = Screen::new(size.x.round() as usize, size.y.round() as usize);
-        for ClippedPrimitive { clip_rect, primitive } in ctx.tessellate(output.shapes.clone(), scale) {
+        for ClippedPrimitive {
+            clip_rect,
+            primitive,
+        } in ctx.tessellate(output.shapes.clone(), scale)
+        {
             let Primitive::Mesh(mesh) = primitive else {
                 return Err("there is no painter for callbacks".into());
             };
@@ -58,7 +62,12 @@ impl TestRenderer for Painter {
                 clip_rect.max.x * scale,
                 clip_rect.max.y * scale,
             ];
-            screen.paint(&mesh, texture, clip.map(|edge| edge.round().max(0.0) as usize), scale);
+            screen.paint(
+                &mesh,
+                texture,
+                clip.map(|edge| edge.round().max(0.0) as usize),
+                scale,
+            );
         }
         Ok(screen.picture())
     }
@@ -107,8 +116,10 @@ impl Screen {
         let low = |values: [f32; 3]| values.into_iter().fold(f32::MAX, f32::min).floor().max(0.0);
         let high = |values: [f32; 3]| values.into_iter().fold(0.0, f32::max).ceil();
         let (xs, ys) = (at.map(|at| at.0), at.map(|at| at.1));
-        let columns = (low(xs) as usize).max(clip[0])..(high(xs) as usize).min(clip[2]).min(self.width);
-        let rows = (low(ys) as usize).max(clip[1])..(high(ys) as usize).min(clip[3]).min(self.height);
+        let columns =
+            (low(xs) as usize).max(clip[0])..(high(xs) as usize).min(clip[2]).min(self.width);
+        let rows =
+            (low(ys) as usize).max(clip[1])..(high(ys) as usize).min(clip[3]).min(self.height);
         for y in rows {
             for x in columns.clone() {
                 let point = (x as f32 + 0.5, y as f32 + 0.5);
@@ -120,12 +131,19 @@ impl Screen {
                 // A point on the edge of two triangles belongs to one of them.
                 let inside = (0..3).all(|edge| {
                     let (from, to) = (at[(edge + 1) % 3], at[(edge + 2) % 3]);
-                    let (dx, dy) = ((to.0 - from.0) * area.signum(), (to.1 - from.1) * area.signum());
+                    let (dx, dy) = (
+                        (to.0 - from.0) * area.signum(),
+                        (to.1 - from.1) * area.signum(),
+                    );
                     shares[edge] > 0.0 || shares[edge] == 0.0 && (dy < 0.0 || dy == 0.0 && dx > 0.0)
                 });
                 if inside {
                     let sum = |value: &dyn Fn(&Vertex) -> f32| -> f32 {
-                        corners.iter().zip(shares).map(|(corner, share)| value(corner) * share).sum()
+                        corners
+                            .iter()
+                            .zip(shares)
+                            .map(|(corner, share)| value(corner) * share)
+                            .sum()
                     };
                     let texel = sample(texture, sum(&|it| it.uv.x), sum(&|it| it.uv.y));
                     let channel = |of: usize| {
@@ -174,7 +192,9 @@ fn sample((image, filter): &(ColorImage, TextureFilter), u: f32, v: f32) -> [f32
         (texel(left + 1.0, top + 1.0), dx * dy),
     ];
     let channel = |of: usize| -> f32 {
-        four.iter().map(|(color, share)| f32::from(color.to_array()[of]) * share).sum()
+        four.iter()
+            .map(|(color, share)| f32::from(color.to_array()[of]) * share)
+            .sum()
     };
     [0, 1, 2, 3].map(channel)
 }

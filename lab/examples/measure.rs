@@ -1,18 +1,31 @@
-//! How many ticks a second can be shown.
+//! How many ticks a second can be shown, without a window: 100 robots on 256×256 cells,
+//! or the scenario of an address.
+//!
+//! ```sh
+//! cargo run --release -p lab --no-default-features --example measure
+//! ```
 
 use std::fmt::Write;
 
 use egui::epaint::{ClippedPrimitive, Primitive};
 use egui::{Pos2, RawInput, Rect, vec2};
 
-use crate::app::App;
-use crate::platform::Stopwatch;
-use crate::watch::Verdict;
+use lab::App;
+use lab::platform::Stopwatch;
+use lab::watch::Verdict;
+
+const CROWD: &str = "map=generate:rooms:256x256:1&robots=100&start=random";
+
+fn main() {
+    let address = std::env::args().nth(1).unwrap_or_else(|| CROWD.into());
+    let app = App::from_address(&address);
+    println!("{}", measure(app));
+}
 
 /// Plays the lab's scenario to its end, one tick a frame, with everything that a frame
 /// takes but the graphics card: the tick, the layout, and the triangles. Tells the mean
 /// and the slowest frames.
-pub fn measure(mut app: App) -> String {
+fn measure(mut app: App) -> String {
     let context = egui::Context::default();
     let mut frames = Vec::new();
     let mut triangles = 0;

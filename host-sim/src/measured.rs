@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+#[cfg(unix)]
 use bridge::Memory;
 use serde::Serialize;
 

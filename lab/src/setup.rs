@@ -371,8 +371,9 @@ mod tests {
     #[test]
     fn an_address_carries_everything() {
         let drawn = unusual().map.world().unwrap();
+        let start = drawn.free_cells().next().unwrap();
         let given = Setup {
-            starts: Some(Starts::At(vec![drawn.free_cells().next().unwrap(); 2])),
+            starts: Some(Starts::At(vec![start; 2])),
             map: Map::Given(drawn),
             ..unusual()
         };

@@ -83,11 +83,17 @@ impl App {
             });
         if let Map::Generated { extent, seed, .. } = &mut setup.map {
             ui.horizontal(|ui| {
-                ui.add(DragValue::new(&mut extent.width).range(8..=512));
-                ui.label("×");
-                ui.add(DragValue::new(&mut extent.height).range(8..=512));
-                ui.label("seed");
-                ui.add(DragValue::new(seed));
+                number(
+                    ui,
+                    "width",
+                    DragValue::new(&mut extent.width).range(8..=512),
+                );
+                number(
+                    ui,
+                    "height",
+                    DragValue::new(&mut extent.height).range(8..=512),
+                );
+                number(ui, "seed", DragValue::new(seed));
             });
         }
         ui.horizontal(|ui| {
@@ -258,8 +264,7 @@ impl App {
         ui.horizontal(|ui| {
             ui.selectable_value(&mut urban, false, "hills");
             ui.selectable_value(&mut urban, true, "town");
-            ui.label("seed");
-            ui.add(DragValue::new(&mut seed));
+            number(ui, "seed", DragValue::new(&mut seed));
         });
         setup.terrain = match urban {
             true => TerrainSource::Urban(seed),
@@ -282,8 +287,7 @@ impl App {
         ui.add(Slider::new(&mut setup.min_altitude, 1.0..=6.0).text("least altitude"));
         ui.add(Slider::new(&mut setup.ceiling, 20.0..=60.0).text("ceiling"));
         ui.horizontal(|ui| {
-            ui.label("seed of the drones");
-            ui.add(DragValue::new(&mut setup.seed));
+            number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
         });
         title(ui, "View");
         ui.checkbox(&mut survey.shows_hidden, "ground that was not seen");
@@ -306,6 +310,12 @@ impl App {
 fn title(ui: &mut Ui, text: &str) {
     ui.add_space(6.0);
     ui.label(RichText::new(text).strong());
+}
+
+/// A number behind its name.
+fn number(ui: &mut Ui, name: &str, value: DragValue<'_>) {
+    let label = ui.label(name);
+    ui.add(value).labelled_by(label.id);
 }
 
 fn choice<T: ValueEnum + PartialEq + Copy + ToString>(
@@ -357,8 +367,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     ui.add(Slider::new(&mut setup.range, 1..=MAX_RADIUS).text("sensor range"));
     ui.checkbox(&mut setup.solid, "a cell holds one robot");
     ui.horizontal(|ui| {
-        ui.label("seed of the run");
-        ui.add(DragValue::new(&mut setup.seed));
+        number(ui, "seed of the run", DragValue::new(&mut setup.seed));
     });
     if let Some(Starts::Random(seed)) = &mut setup.starts {
         *seed = setup.seed;

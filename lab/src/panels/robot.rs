@@ -17,7 +17,7 @@ impl App {
         let mut chosen = self.selected;
         ui.horizontal(|ui| {
             let text = chosen.map_or("all robots".to_owned(), |robot| format!("robot {robot}"));
-            let menu = egui::ComboBox::from_id_salt("robot").selected_text(text);
+            let menu = egui::ComboBox::from_label("looked at").selected_text(text);
             menu.show_ui(ui, |ui| {
                 ui.selectable_value(&mut chosen, None, "all robots");
                 for robot in 0..robots {

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A browser with one page.
-pub struct Browser {
+pub(crate) struct Browser {
     driver: Child,
     session: String,
     _profile: tempfile::TempDir,
@@ -20,7 +20,7 @@ pub struct Browser {
 
 impl Browser {
     /// Starts a browser with a window of this size.
-    pub fn start(width: u32, height: u32) -> Self {
+    pub(crate) fn start(width: u32, height: u32) -> Self {
         let mut driver = Command::new("chromedriver")
             .arg("--port=0")
             .stdout(Stdio::piped())
@@ -67,7 +67,7 @@ impl Browser {
         }
     }
 
-    pub fn open(&self, url: &str) {
+    pub(crate) fn open(&self, url: &str) {
         // Also when only the part behind # differs, from scratch.
         post(
             &format!("{}/url", self.session),
@@ -77,13 +77,13 @@ impl Browser {
     }
 
     /// Runs JavaScript; `return` gives a value.
-    pub fn run(&self, script: &str, arguments: Value) -> Value {
+    pub(crate) fn run(&self, script: &str, arguments: Value) -> Value {
         let body = json!({"script": script, "args": arguments});
         post(&format!("{}/execute/sync", self.session), &body)
     }
 
     /// An attribute `data-NAME` of the page.
-    pub fn data(&self, name: &str) -> String {
+    pub(crate) fn data(&self, name: &str) -> String {
         let script = "return document.body.getAttribute('data-' + arguments[0])";
         self.run(script, json!([name]))
             .as_str()
@@ -92,7 +92,7 @@ impl Browser {
     }
 
     /// Waits until an attribute is as wanted, and returns it.
-    pub fn wait(&self, name: &str, is_wanted: impl Fn(&str) -> bool) -> String {
+    pub(crate) fn wait(&self, name: &str, is_wanted: impl Fn(&str) -> bool) -> String {
         let begin = Instant::now();
         loop {
             let value = self.data(name);
@@ -109,7 +109,7 @@ impl Browser {
     }
 
     /// Drops a file on the page.
-    pub fn drop_file(&self, name: &str, content: &[u8]) {
+    pub(crate) fn drop_file(&self, name: &str, content: &[u8]) {
         let script = "
             const data = new DataTransfer();
             data.items.add(new File([new Uint8Array(arguments[1])], arguments[0]));
@@ -123,7 +123,7 @@ impl Browser {
     }
 
     /// What the page and the browser have complained of.
-    pub fn console(&self) -> Vec<String> {
+    pub(crate) fn console(&self) -> Vec<String> {
         let entries = post(
             &format!("{}/se/log", self.session),
             &json!({"type": "browser"}),
@@ -134,7 +134,7 @@ impl Browser {
     }
 
     /// A picture of the page, as PNG.
-    pub fn picture(&self) -> Vec<u8> {
+    pub(crate) fn picture(&self) -> Vec<u8> {
         let url = format!("{}/screenshot", self.session);
         let mut answer = ureq::get(&url).call().unwrap();
         let answer: Value = answer.body_mut().read_json().unwrap();
@@ -176,7 +176,7 @@ fn base64(text: &str) -> Vec<u8> {
 }
 
 /// Serves a folder on a port of its own, as long as the program runs; returns its address.
-pub fn serve(folder: PathBuf) -> String {
+pub(crate) fn serve(folder: PathBuf) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("http://{}/", listener.local_addr().unwrap());
     std::thread::spawn(move || {

@@ -64,7 +64,7 @@ fn dropped_maps_are_explored_or_refused_with_a_sentence() {
     browser.drop_file("bad.txt", b"....\n..\n");
     let error = browser.wait("error", |error| !error.is_empty());
     assert!(
-        error.starts_with("bad.txt") && error.contains("row"),
+        error.starts_with("bad.txt") && error.contains("equally long"),
         "{error}"
     );
     assert_eq!(browser.data("map"), "office");

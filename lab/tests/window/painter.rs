@@ -10,7 +10,7 @@ use image::{Rgba, RgbaImage};
 
 /// Triangles with a texture, blended over each other.
 #[derive(Default)]
-pub struct Painter {
+pub(crate) struct Painter {
     textures: HashMap<TextureId, (ColorImage, TextureFilter)>,
 }
 

@@ -6,8 +6,7 @@ use planner_core::{Cell, Direction};
 
 use crate::watch::Watch;
 
-/// The side of the window in which a robot decides without a search, halved: farther
-/// goals come from the search over the whole map.
+/// The side of the window in which the explorer decides without a search, halved.
 const NEAR: u16 = 16;
 
 /// One change of mind.
@@ -59,7 +58,7 @@ pub fn decisions(watch: &Watch, robot: usize, most: usize) -> Vec<Decision> {
             };
             let far = match record.at.chebyshev(next) {
                 0..=NEAR => "near",
-                _ => "far, found by search",
+                _ => "far",
             };
             say(format!("goes to {next} ({far}): {why}"));
         }

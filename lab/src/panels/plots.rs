@@ -1,7 +1,7 @@
 //! Coverage, work and bytes, tick by tick.
 
 use egui::{RichText, Stroke, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints, VLine};
+use egui_plot::{Corner, Legend, Line, Plot, PlotPoints, VLine};
 
 use crate::app::{App, Shown};
 use crate::colors::Colors;
@@ -27,11 +27,11 @@ impl App {
     pub(super) fn plots(&mut self, ui: &mut Ui) {
         let colors = Colors::of(ui);
         let shown = self.shown_tick();
-        for (title, value) in PLOTS {
+        for (place, (title, value)) in PLOTS.into_iter().enumerate() {
             ui.label(RichText::new(title).strong());
             let mut plot = small(title);
-            if self.runs.len() > 1 {
-                plot = plot.legend(Legend::default());
+            if self.runs.len() > 1 && place == 0 {
+                plot = plot.legend(Legend::default().position(Corner::LeftTop));
             }
             plot.show(ui, |plot| {
                 for (index, run) in self.runs.iter().enumerate() {

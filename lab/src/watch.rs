@@ -219,8 +219,8 @@ impl Watch {
         if self.state().is_some() || self.differs.is_some() {
             return;
         }
-        let ahead = |run: &Box<dyn Stepping>| run.progress().ticks > self.shown;
-        if self.past.as_ref().is_none_or(ahead) {
+        let past = self.past.as_deref();
+        if past.is_none_or(|run| run.progress().ticks > self.shown) {
             let mut past = run::open(&self.scenario, Some(self.sensor.clone()))
                 .expect("the scenario has been run before");
             past.listen();

@@ -71,9 +71,12 @@ fn phone() {
 #[test]
 fn hills_from_above() {
     let mut harness = harness("", 1280.0, 800.0, Theme::Dark);
+    // No step but those that are asked for.
+    harness.state_mut().speed = 0.0;
     harness.get_by_label("3-D survey").click();
     harness.run_steps(2);
     harness.state_mut().playing = false;
+    harness.state_mut().speed = 60.0;
     for _ in 0..60 {
         harness.state_mut().survey.as_mut().unwrap().step();
     }

@@ -1,5 +1,5 @@
 //! How many ticks a second can be shown, without a window: 100 robots on 256×256 cells,
-//! or the scenario of an address.
+//! or the scenario of an address, and so many ticks of it at most.
 //!
 //! ```sh
 //! cargo run --release -p lab --no-default-features --example measure
@@ -19,22 +19,24 @@ const CROWD: &str = "map=generate:rooms:256x256:1&robots=100&start=random";
 fn main() {
     let address = std::env::args().nth(1).unwrap_or_else(|| CROWD.into());
     let app = App::from_address(&address);
-    println!("{}", measure(app));
+    let most = std::env::args().nth(2).and_then(|most| most.parse().ok());
+    println!("{}", measure(app, most.unwrap_or(usize::MAX)));
 }
 
 /// Plays the lab's scenario to its end, one tick a frame, with everything that a frame
 /// takes but the graphics card: the tick, the layout, and the triangles. Tells the mean
 /// and the slowest frames.
-fn measure(mut app: App) -> String {
+fn measure(mut app: App, most: usize) -> String {
     let context = egui::Context::default();
     let mut frames = Vec::new();
     let mut triangles = 0;
     app.playing = false;
     let whole = Stopwatch::start();
-    while app
-        .runs
-        .iter()
-        .any(|run| run.watch.verdict() == Verdict::Running)
+    while frames.len() < most
+        && app
+            .runs
+            .iter()
+            .any(|run| run.watch.verdict() == Verdict::Running)
     {
         let clock = Stopwatch::start();
         app.tick();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use planner_core::map::TileIndex;
 use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, explorer};
 
-use crate::medium::Medium;
+use crate::medium::{Medium, Message};
 use crate::sensor::Sensor;
 
 /// A robot: a planner and the body that it moves.
@@ -27,6 +27,13 @@ pub struct Robot<const TW: usize, const TH: usize> {
     is_there: bool,
     /// Whether it has exchanged its role in this tick.
     has_exchanged: bool,
+}
+
+impl<const TW: usize, const TH: usize> Robot<TW, TH> {
+    /// Whether its body is in the world: false before it arrives.
+    pub fn is_there(&self) -> bool {
+        self.is_there
+    }
 }
 
 /// What one robot did in one tick.
@@ -202,6 +209,17 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     /// The robots, by id.
     pub fn robots(&self) -> &[Robot<TW, TH>] {
         &self.robots
+    }
+
+    /// From now on, remember the messages of each tick.
+    pub fn listen(&mut self) {
+        self.medium.listen();
+    }
+
+    /// The messages of the last tick, arrived or lost. Empty without
+    /// [`listen`](Self::listen).
+    pub fn messages(&self) -> &[Message] {
+        self.medium.messages()
     }
 
     /// Number of ticks done.

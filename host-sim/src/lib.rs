@@ -6,13 +6,18 @@
 //! A [`Scenario`](run::Scenario) holds everything that a run follows from;
 //! [`run::run`] gives its outcome and, if asked, the [`Trace`](trace::Trace)
 //! that everything else is drawn from.
+//!
+//! Compiled for the browser (`wasm32`), the library lacks `chip`, `experiments` and
+//! `live`, which need processes, threads or sockets.
 
 #[cfg(unix)]
 pub mod chip;
 mod coverage;
 pub mod draw;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod experiments;
 pub mod fleet;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod live;
 pub mod measured;
 pub mod medium;

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+#[cfg(unix)]
 use bridge::Memory;
 use serde::Serialize;
 
@@ -74,6 +75,7 @@ pub struct Measured {
     pub stack_bytes: u32,
 }
 
+#[cfg(unix)]
 impl Measured {
     pub(crate) fn count(&mut self, call: Call, instructions: u64, stack: u32) {
         let tally = self.calls.entry(call).or_default();

@@ -1,6 +1,7 @@
 //! From a scenario to what happened.
 
 mod book;
+mod stepping;
 
 use std::sync::Arc;
 
@@ -15,7 +16,8 @@ use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
 use crate::trace::Trace;
 use crate::world::{Reachable, World};
-use book::Book;
+
+pub use stepping::{Running, Seen, Stepping};
 
 /// Everything that a run follows from. The same scenario gives the same run on
 /// every machine.
@@ -340,6 +342,27 @@ pub fn run(
     run_on(&Here, scenario, options)
 }
 
+/// A scenario before its first tick, for whoever wants to watch: the same run tick
+/// by tick, with a trace. `sensor` is one of the scenario's world and range, if there is
+/// one already.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn open(
+    scenario: &Scenario,
+    sensor: Option<Arc<Sensor>>,
+) -> Result<Box<dyn Stepping>, ScenarioError> {
+    scenario.check()?;
+    let Extent { width, height } = scenario.world.extent();
+    Ok(match width.max(height) {
+        0..=32 => Box::new(Running::<4, 4>::new(&Here, scenario, sensor, true)),
+        33..=64 => Box::new(Running::<8, 8>::new(&Here, scenario, sensor, true)),
+        65..=128 => Box::new(Running::<16, 16>::new(&Here, scenario, sensor, true)),
+        129..=256 => Box::new(Running::<32, 32>::new(&Here, scenario, sensor, true)),
+        _ => Box::new(Running::<64, 64>::new(&Here, scenario, sensor, true)),
+    })
+}
+
 /// As [`run`], with planners that are elsewhere.
 ///
 /// # Errors
@@ -431,18 +454,12 @@ fn compiled_on<const TW: usize, const TH: usize>(
     scenario: &Scenario,
     options: Options<'_>,
 ) -> (Outcome, Option<Trace>) {
-    let sensor = options
-        .sensor
-        .unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
-    let mut fleet = fleet_on::<TW, TH>(host, scenario, sensor.clone());
-    let mut book = Book::new(scenario, sensor, options.trace);
+    let mut running = Running::<TW, TH>::new(host, scenario, options.sensor, options.trace);
     let mut progress = options.progress;
-    while fleet.ticks() < scenario.max_ticks && !fleet.has_stopped() && !host.has_failed() {
-        fleet.tick();
-        book.note(&fleet);
+    while !host.has_failed() && running.tick() {
         if let Some(progress) = &mut progress {
-            progress(book.progress());
+            progress(running.progress());
         }
     }
-    book.close(scenario, &fleet)
+    running.end()
 }

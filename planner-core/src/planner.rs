@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::cell::{Cell, Direction};
 use crate::explorer::Role;
-use crate::map::{Learnt, Map, TileSet};
+use crate::map::{Learnt, Map, TileIndex, TileSet};
 use crate::radio::{FrameError, Heard, MAX_LEN};
 use crate::sight::Sighting;
 
@@ -190,6 +190,13 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// with a robot in its way. `None`: this planner does not exchange roles.
     fn role(&self) -> Option<Role> {
         None
+    }
+
+    /// The cells of a tile that the search over the whole map has reached, for
+    /// displays; none if no search is under way, or this planner does not tell.
+    fn searched(&self, at: TileIndex) -> u64 {
+        let _ = at;
+        0
     }
 
     /// Takes over another robot's role.

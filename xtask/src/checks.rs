@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{Command, cargo, command};
-use crate::{c_interface, documents, firmware, fuzz, install, worst};
+use crate::{c_interface, documents, firmware, fuzz, install, lab, worst};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -97,7 +97,9 @@ const CHECKS: &[Check] = &[
         title: "unit, property, cross-crate and documentation tests",
         run: || {
             install::octomap()?;
+            // The lab has a check of its own.
             repeatable(cargo(["test", "--workspace", "--locked", "--no-fail-fast"]))
+                .arg("--exclude=lab")
                 .run()
                 .map(nothing)
         },
@@ -111,6 +113,16 @@ const CHECKS: &[Check] = &[
                 .run()
                 .map(nothing)
         },
+    },
+    Check {
+        name: "lab",
+        title: "the lab's window: state, replay, pictures of the screen",
+        run: || lab::window_works().map(nothing),
+    },
+    Check {
+        name: "lab-web",
+        title: "the lab's page in a browser decides as the host",
+        run: lab::page_works,
     },
     Check {
         name: "test-keyed",

@@ -8,6 +8,7 @@ mod documents;
 mod firmware;
 mod fuzz;
 mod install;
+mod lab;
 mod logs;
 mod shell;
 mod worst;
@@ -54,6 +55,8 @@ enum Task {
         #[arg(long, value_name = "N", default_value_t = 600)]
         seconds: u32,
     },
+    /// Builds the lab as a web page into dist/, for any file server.
+    LabWeb,
     /// Writes the header of the C interface, c-api/include/planner.h.
     CHeader,
     /// Explores random small worlds until one of them goes wrong.
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
             .map(|images| images.iter().for_each(|image| println!("{image}"))),
         Task::RunFirmware => firmware::build_and_run(),
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
+        Task::LabWeb => lab::build_page().map(|size| println!("{size}")),
         Task::CHeader => c_interface::write_header(),
         Task::Soak { runs } => soak(runs),
     };

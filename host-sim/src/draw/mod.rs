@@ -1,20 +1,26 @@
 //! Pictures of a run, all from its trace: the final picture, the animation, the
-//! coverage curve.
+//! coverage curve. In the browser, where there is no font for them, only the animation.
 
 mod animation;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod chart;
+#[cfg(not(target_arch = "wasm32"))]
 mod coverage;
 mod paint;
+#[cfg(not(target_arch = "wasm32"))]
 mod picture;
 mod replay;
 
 use std::io;
 
+#[cfg(not(target_arch = "wasm32"))]
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use thiserror::Error;
 
 pub use animation::animation;
+#[cfg(not(target_arch = "wasm32"))]
 pub use coverage::{coverage_csv, coverage_plot};
+#[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
 pub use replay::Replay;
 
@@ -44,12 +50,14 @@ impl<E: std::error::Error + Send + Sync> From<plotters::drawing::DrawingAreaErro
 }
 
 /// Pixels, three bytes each, row by row.
+#[cfg(not(target_arch = "wasm32"))]
 struct Canvas {
     width: u32,
     height: u32,
     pixels: Vec<u8>,
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 impl Canvas {
     fn new(width: u32, height: u32) -> Self {
         Self {

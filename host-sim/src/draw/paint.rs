@@ -1,8 +1,11 @@
 //! Colours and text.
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::sync::Once;
 
-use plotters::style::{FontStyle, IntoFont, RGBColor, TextStyle, register_font};
+use plotters::style::RGBColor;
+#[cfg(not(target_arch = "wasm32"))]
+use plotters::style::{FontStyle, IntoFont, TextStyle, register_font};
 
 /// What a cell is to whoever looks at a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,6 +30,7 @@ impl Ground {
         }
     }
 
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Free => "seen free",
@@ -59,6 +63,7 @@ pub(super) const ROBOT_COLORS: usize = ROBOTS.len();
 
 pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
 
+#[cfg(not(target_arch = "wasm32"))]
 /// Text of `size` pixels, in a font that comes with the program.
 pub(super) fn text(size: u32) -> TextStyle<'static> {
     static FONT: Once = Once::new();

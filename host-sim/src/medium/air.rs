@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
+use super::Message;
 use crate::world::World;
 
 /// What goes wrong in the air besides plain loss. None of it by default.
@@ -58,6 +59,8 @@ pub(super) struct Air {
     loss: f64,
     world: Arc<World>,
     chance: ChaCha8Rng,
+    /// The messages of this tick, if anybody asks for them.
+    messages: Option<Vec<Message>>,
 }
 
 impl Air {
@@ -67,6 +70,7 @@ impl Air {
             loss,
             world,
             chance: ChaCha8Rng::seed_from_u64(seed),
+            messages: None,
         }
     }
 
@@ -81,9 +85,32 @@ impl Air {
             (partition.from..partition.until).contains(&tick)
                 && (from.0.0 < partition.border) != (to.0.0 < partition.border)
         };
-        !self.faults.partitions.iter().any(is_cut)
+        let arrived = !self.faults.partitions.iter().any(is_cut)
             && self.reaches(from.1, to.1)
-            && !self.strikes(self.loss)
+            && !self.strikes(self.loss);
+        if let Some(messages) = &mut self.messages {
+            messages.push(Message {
+                from: from.0,
+                to: to.0,
+                arrived,
+            });
+        }
+        arrived
+    }
+
+    pub(super) fn listen(&mut self) {
+        self.messages.get_or_insert_default();
+    }
+
+    pub(super) fn messages(&self) -> &[Message] {
+        self.messages.as_deref().unwrap_or_default()
+    }
+
+    /// Forgets the messages of the last tick.
+    pub(super) fn clear(&mut self) {
+        if let Some(messages) = &mut self.messages {
+            messages.clear();
+        }
     }
 
     /// The copies of a frame that a robot receives, and how many ticks late.

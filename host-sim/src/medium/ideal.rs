@@ -2,8 +2,8 @@
 
 use planner_core::{Map, RobotId, Status, TileSet};
 
-use super::Medium;
 use super::air::Air;
+use super::{Medium, Message};
 use crate::fleet::Robot;
 
 /// Every living robot hands its whole map and its status to every other; all
@@ -113,7 +113,16 @@ impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
 }
 
 impl<const TW: usize, const TH: usize> Medium<TW, TH> for Ideal<TW, TH> {
+    fn listen(&mut self) {
+        self.air.listen();
+    }
+
+    fn messages(&self) -> &[Message] {
+        self.air.messages()
+    }
+
     fn exchange(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
+        self.air.clear();
         if self.sync != 0 && tick.is_multiple_of(self.sync) {
             self.speak(robots);
             self.listen(tick, robots);

@@ -8,6 +8,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use clap::ValueEnum;
+use planner_core::RobotId;
 use serde::{Deserialize, Serialize};
 
 pub use air::{AirFaults, Partition, Reach};
@@ -22,6 +23,25 @@ use air::Air;
 pub trait Medium<const TW: usize, const TH: usize> {
     /// Carries what the living robots say in `tick`, and what is due in it.
     fn exchange(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]);
+
+    /// From now on, remember the messages of each tick, if this medium can.
+    fn listen(&mut self) {}
+
+    /// The messages of the last tick, if they are remembered.
+    fn messages(&self) -> &[Message] {
+        &[]
+    }
+}
+
+/// One message on its way from one robot to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Message {
+    /// Who spoke.
+    pub from: RobotId,
+    /// Who was to hear.
+    pub to: RobotId,
+    /// Whether it arrived: within reach, and not lost. It may come late.
+    pub arrived: bool,
 }
 
 /// Names a medium, on the command line and in traces.

@@ -3,8 +3,8 @@
 use planner_core::RobotId;
 use planner_core::radio::MAX_LEN;
 
-use super::Medium;
 use super::air::Air;
+use super::{Medium, Message};
 use crate::fleet::Robot;
 
 /// Every robot broadcasts as many frames as its planner's budget allows; the air
@@ -79,7 +79,16 @@ impl Radio {
 }
 
 impl<const TW: usize, const TH: usize> Medium<TW, TH> for Radio {
+    fn listen(&mut self) {
+        self.air.listen();
+    }
+
+    fn messages(&self) -> &[Message] {
+        self.air.messages()
+    }
+
     fn exchange(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
+        self.air.clear();
         if self.sync != 0 && tick.is_multiple_of(self.sync) {
             self.speak(tick, robots);
         }

@@ -103,6 +103,11 @@ impl Book {
         }
     }
 
+    /// The records so far, if any are kept.
+    pub(super) fn records(&self) -> &[Record] {
+        self.records.as_deref().unwrap_or_default()
+    }
+
     pub(super) fn progress(&self) -> Progress {
         Progress {
             ticks: self.outcome.ticks,
@@ -111,23 +116,34 @@ impl Book {
         }
     }
 
-    pub(super) fn close<const TW: usize, const TH: usize>(
-        mut self,
+    /// What happened up to now.
+    pub(super) fn outcome<const TW: usize, const TH: usize>(
+        &self,
         scenario: &Scenario,
         fleet: &Fleet<TW, TH>,
-    ) -> (Outcome, Option<Trace>) {
-        self.outcome.shared_cells = self.coverage.shared_cells();
-        self.outcome.violations = fleet.violations().to_vec();
+    ) -> Outcome {
+        let mut outcome = self.outcome.clone();
+        outcome.shared_cells = self.coverage.shared_cells();
+        outcome.violations = fleet.violations().to_vec();
         let unheard = unheard(fleet);
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
-            let noted = &mut self.outcome.robots[usize::from(robot.id.0)];
+            let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
             noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
         }
+        outcome
+    }
+
+    pub(super) fn close<const TW: usize, const TH: usize>(
+        self,
+        scenario: &Scenario,
+        fleet: &Fleet<TW, TH>,
+    ) -> (Outcome, Option<Trace>) {
+        let outcome = self.outcome(scenario, fleet);
         let trace = self.records.map(|records| Trace::new(scenario, records));
-        (self.outcome, trace)
+        (outcome, trace)
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod baselines;
 pub mod draw;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod figures;
 mod mapped;
 pub mod octree;
@@ -15,7 +16,7 @@ mod trace;
 pub mod voxels;
 
 pub use mapped::octree;
-pub use run::{Host, run, run_on};
+pub use run::{Host, Stepping, open, run, run_on};
 pub use scenario::{DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario};
 pub use sensor::look;
 pub use summary::{RobotSummary, Summary};

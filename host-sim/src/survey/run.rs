@@ -1,5 +1,7 @@
 //! A run: sense, share, decide in turn, fly; until every living robot has stopped.
 
+use std::sync::Arc;
+#[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
 use bridge::SurveyorConfig;
@@ -70,13 +72,38 @@ pub fn run_on(
     terrain: &Terrain,
     scenario: &Scenario,
 ) -> Result<Trace, SetupError> {
+    let mut run = open_on(host, Arc::new(terrain.clone()), scenario)?;
+    while !host.has_failed() && run.step() {}
+    Ok(run.finish())
+}
+
+/// A run before its first step, for whoever wants to watch.
+pub fn open(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Box<dyn Stepping>, SetupError> {
+    open_on(&Here, terrain, scenario)
+}
+
+fn open_on(
+    host: &impl Host,
+    terrain: Arc<Terrain>,
+    scenario: &Scenario,
+) -> Result<Box<dyn Stepping>, SetupError> {
     let Extent { width, height } = terrain.extent();
-    match width.max(height).div_ceil(8) {
-        0..=4 => compiled_on::<4>(host, terrain, scenario),
-        5..=13 => compiled_on::<13>(host, terrain, scenario),
-        14..=25 => compiled_on::<25>(host, terrain, scenario),
-        _ => compiled_on::<64>(host, terrain, scenario),
-    }
+    Ok(match width.max(height).div_ceil(8) {
+        0..=4 => Box::new(Simulation::<4>::new(host, terrain, scenario)?),
+        5..=13 => Box::new(Simulation::<13>::new(host, terrain, scenario)?),
+        14..=25 => Box::new(Simulation::<25>::new(host, terrain, scenario)?),
+        _ => Box::new(Simulation::<64>::new(host, terrain, scenario)?),
+    })
+}
+
+/// A run that goes on step by step.
+pub trait Stepping {
+    /// One step of the fleet; false if the run is over.
+    fn step(&mut self) -> bool;
+    /// What has happened so far.
+    fn trace(&self) -> &Trace;
+    /// What happened.
+    fn finish(self: Box<Self>) -> Trace;
 }
 
 enum Pilot<const T: usize> {
@@ -110,19 +137,9 @@ struct Robot<const T: usize> {
     sent: Sent,
 }
 
-fn compiled_on<const T: usize>(
-    host: &impl Host,
-    terrain: &Terrain,
-    scenario: &Scenario,
-) -> Result<Trace, SetupError> {
-    let mut sim = Simulation::<T>::new(host, terrain, scenario)?;
-    while !host.has_failed() && sim.step() {}
-    Ok(sim.trace)
-}
-
-struct Simulation<'a, const T: usize> {
-    terrain: &'a Terrain,
-    scenario: &'a Scenario,
+struct Simulation<const T: usize> {
+    terrain: Arc<Terrain>,
+    scenario: Scenario,
     robots: Vec<Robot<T>>,
     /// What anybody has seen.
     union: Box<Surface<T, T>>,
@@ -131,14 +148,28 @@ struct Simulation<'a, const T: usize> {
     trace: Trace,
 }
 
-impl<'a, const T: usize> Simulation<'a, T> {
+impl<const T: usize> Stepping for Simulation<T> {
+    fn step(&mut self) -> bool {
+        self.advance()
+    }
+
+    fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    fn finish(self: Box<Self>) -> Trace {
+        self.trace
+    }
+}
+
+impl<const T: usize> Simulation<T> {
     fn new(
         host: &impl Host,
-        terrain: &'a Terrain,
-        scenario: &'a Scenario,
+        terrain: Arc<Terrain>,
+        scenario: &Scenario,
     ) -> Result<Self, SetupError> {
         let extent = terrain.extent();
-        let starts = start_positions(terrain, scenario);
+        let starts = start_positions(&terrain, scenario);
         let robots = starts
             .iter()
             .copied()
@@ -156,18 +187,18 @@ impl<'a, const T: usize> Simulation<'a, T> {
             })
             .collect::<Result<_, SetupError>>()?;
         Ok(Self {
+            trace: Trace::new(&terrain, scenario, starts),
             terrain,
-            scenario,
+            scenario: scenario.clone(),
             robots,
             union: Box::new(Surface::new(extent)?),
             faults: ChaCha8Rng::seed_from_u64(scenario.seed),
             now: 0,
-            trace: Trace::new(terrain, scenario, starts),
         })
     }
 
     /// One step of the fleet; says whether there is another.
-    fn step(&mut self) -> bool {
+    fn advance(&mut self) -> bool {
         for kill in &self.scenario.kills {
             if kill.step == self.now
                 && let Some(robot) = self.robots.get_mut(kill.robot)
@@ -202,7 +233,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
 
     fn sense(&mut self) {
         for robot in self.robots.iter_mut().filter(|robot| robot.awake) {
-            let columns = look(self.terrain, robot.at, self.scenario.limits.range);
+            let columns = look(&self.terrain, robot.at, self.scenario.limits.range);
             for &column in &columns {
                 if self.union.learn(column) {
                     self.trace.found.push((self.now, column));
@@ -288,6 +319,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
     fn act(&mut self, i: usize, (orders, cost): &(Vec<Option<planner_core::Cell>>, u32)) {
+        #[cfg(not(target_arch = "wasm32"))]
         let began = Instant::now();
         if let Pilot::Follower(follower) = &mut self.robots[i].pilot
             && let Some(&target) = orders.get(i)
@@ -296,6 +328,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
         }
         let pilot = self.robots[i].pilot.get_mut();
         let action = pilot.tick();
+        #[cfg(not(target_arch = "wasm32"))]
         self.trace
             .decision_nanoseconds
             .push(began.elapsed().as_nanos() as u64);
@@ -311,7 +344,7 @@ impl<'a, const T: usize> Simulation<'a, T> {
             } else {
                 self.trace
                     .safety
-                    .check_flight(self.terrain, &self.scenario.limits, from, to);
+                    .check_flight(&self.terrain, &self.scenario.limits, from, to);
                 self.robots[i].at = to;
             }
             let motion = match deed {

@@ -127,7 +127,7 @@ pub struct Trace {
     pub all_stopped: bool,
     /// What should never happen.
     pub safety: Safety,
-    /// Host time of each decision; not part of the digest.
+    /// Host time of each decision; not part of the digest, and empty in the browser.
     pub decision_nanoseconds: Vec<u64>,
 }
 

@@ -55,13 +55,31 @@ impl World {
     /// [`WorldError`] names the file, the line or key, what was expected and
     /// what to do.
     pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, WorldError> {
+        Self::read_with(path, options, read_bytes)
+    }
+
+    /// As [`read`](Self::read), with files that are elsewhere: `open` gives the bytes
+    /// of the map, and of the image that a map_server YAML file names.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn read_with(
+        path: impl AsRef<Path>,
+        options: &ReadOptions,
+        open: impl Fn(&Path) -> Result<Vec<u8>, Problem>,
+    ) -> Result<Self, WorldError> {
         let path = path.as_ref();
-        read(path, options).map_err(|problem| problem.of(path.display().to_string()))
+        read(path, options, &open).map_err(|problem| problem.of(path.display().to_string()))
     }
 }
 
-fn read(path: &Path, options: &ReadOptions) -> Result<World, Problem> {
+fn read(
+    path: &Path,
+    options: &ReadOptions,
+    open: &dyn Fn(&Path) -> Result<Vec<u8>, Problem>,
+) -> Result<World, Problem> {
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    let text = |expected| String::from_utf8(open(path)?).map_err(|_| Problem::NotText { expected });
     match ending(path).as_str() {
         "png" | "pgm" => {
             let pixels = match options.scale {
@@ -69,20 +87,20 @@ fn read(path: &Path, options: &ReadOptions) -> Result<World, Problem> {
                 Scale::Pixels(pixels) => pixels,
                 Scale::Metres(metres) => return Err(Problem::NoResolution { metres }),
             };
-            raster::Image::decode(&read_bytes(path)?)
+            raster::Image::decode(&open(path)?)
                 .and_then(|image| image.cut(pixels, |gray| raster::dark(gray, options.dark_below)))
                 .and_then(|grid| World::from_grid(&name, grid))
         }
         "yaml" | "yml" => {
-            let yaml = read_text(path, "a map_server YAML file")?;
-            ros::read(&name, path, &yaml, options.scale)
+            let yaml = text("a map_server YAML file")?;
+            ros::read(&name, path, &yaml, options.scale, open)
         }
         "map" => {
-            let map = read_text(path, "a MovingAI map")?;
+            let map = text("a MovingAI map")?;
             with_own_cells(movingai::parse(&name, &map), options.scale)
         }
         "txt" => {
-            let map = read_text(path, "a text map")?;
+            let map = text("a text map")?;
             let world = if map.starts_with("type ") {
                 movingai::parse(&name, &map)
             } else {
@@ -122,10 +140,6 @@ pub(super) fn unknown_ending(path: &Path, expected: &'static str) -> Problem {
     }
 }
 
-pub(super) fn read_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
+fn read_bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     fs::read(path).map_err(Problem::from_read)
-}
-
-fn read_text(path: &Path, expected: &'static str) -> Result<String, Problem> {
-    String::from_utf8(read_bytes(path)?).map_err(|_| Problem::NotText { expected })
 }

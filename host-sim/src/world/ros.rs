@@ -10,7 +10,7 @@ use serde::Deserialize;
 use super::World;
 use super::error::Problem;
 use super::raster::{Ground, Image};
-use super::read::{Scale, read_bytes};
+use super::read::Scale;
 
 /// The file as it stands: every key may be missing, and is asked for by name.
 #[derive(Deserialize)]
@@ -41,7 +41,13 @@ struct Description {
 }
 
 /// Reads the map that `yaml`, the text of the file `path`, describes.
-pub(super) fn read(name: &str, path: &Path, yaml: &str, scale: Scale) -> Result<World, Problem> {
+pub(super) fn read(
+    name: &str,
+    path: &Path,
+    yaml: &str,
+    scale: Scale,
+    open: &dyn Fn(&Path) -> Result<Vec<u8>, Problem>,
+) -> Result<World, Problem> {
     let description = Description::parse(yaml)?;
     let (pixels, note) = pixels_per_cell(scale, description.resolution)?;
     let image_path = path.with_file_name("").join(&description.image);
@@ -49,7 +55,7 @@ pub(super) fn read(name: &str, path: &Path, yaml: &str, scale: Scale) -> Result<
         path: image_path.clone(),
         problem: Box::new(problem),
     };
-    let image = read_bytes(&image_path)
+    let image = open(&image_path)
         .and_then(|bytes| Image::decode(&bytes))
         .map_err(in_image)?;
     let grid = image.cut(pixels, |gray| description.ground(gray))?;

@@ -52,7 +52,7 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
             assert!(here.complete(), "{title}");
             let tick = measured.calls[&Call::Tick];
             println!(
-                "{title:<55} {:>5} steps {:016x}  mean {:>7} largest {:>7}",
+                "{title:<55} {:>5} steps {}  mean {:>7} largest {:>7}",
                 here.seen.len() - 1,
                 here.digest(),
                 tick.mean,

@@ -13,6 +13,7 @@ use super::surroundings::Surroundings;
 use super::wave::{LABELS, Wave};
 use super::window::{Candidate, Rows, SIDE, Window};
 use crate::cell::Cell;
+use crate::map::TileIndex;
 use crate::planner::RobotId;
 
 /// How often all frontiers are given away anew if there are more robots than
@@ -74,6 +75,15 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
 
     pub(crate) fn is_idle(&self) -> bool {
         self.stage == Stage::Idle
+    }
+
+    /// The cells of a tile that the search under way has reached.
+    pub(crate) fn searched(&self, at: TileIndex) -> u64 {
+        if self.is_idle() {
+            0
+        } else {
+            self.wave.reached(at)
+        }
     }
 
     /// Drops the search.

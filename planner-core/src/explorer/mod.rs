@@ -41,7 +41,7 @@ use surroundings::Surroundings;
 use window::{Aim, Candidate, NearSearch};
 
 use crate::cell::{Cell, Direction, Extent};
-use crate::map::{ExtentError, Learnt, Map, TileSet};
+use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
 use crate::planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
 use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
 use crate::sight::Sighting;
@@ -478,6 +478,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn role(&self) -> Option<Role> {
         Some(self.role)
+    }
+
+    fn searched(&self, at: TileIndex) -> u64 {
+        self.far.searched(at)
     }
 
     fn adopt(&mut self, role: Role) {

@@ -6,7 +6,7 @@
 
 use super::maybe::Maybe;
 use super::path::Path;
-use crate::cell::Cell;
+use crate::cell::{Cell, Direction};
 use crate::planner::{RobotId, Stop};
 
 /// Where a role is going, and how.
@@ -52,6 +52,27 @@ impl Role {
     /// Whether the role has stopped.
     pub const fn has_stopped(&self) -> bool {
         matches!(self.stopped, Maybe::Just(_))
+    }
+
+    /// Where the role is going.
+    pub fn goal(&self) -> Option<Cell> {
+        self.plan.as_ref().map(|plan| plan.goal)
+    }
+
+    /// Steps to the goal at most; 0 without a plan.
+    pub fn remaining(&self) -> u32 {
+        self.plan.as_ref().map_or(0, |plan| plan.remaining)
+    }
+
+    /// The first steps of the way that it is committed to, at most 256.
+    pub fn way(&self) -> impl Iterator<Item = Direction> + use<> {
+        let mut path = self.plan.map_or(Path::new(), |plan| plan.path);
+        core::iter::from_fn(move || path.pop_front())
+    }
+
+    /// Changes to a longer plan since the role last learnt anything.
+    pub const fn changes(&self) -> u8 {
+        self.used
     }
 
     /// The cell that the role goes to next from `here`.

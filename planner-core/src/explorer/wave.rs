@@ -197,6 +197,11 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
     }
 
+    /// The cells of a tile that a wave has reached.
+    pub(crate) fn reached(&self, at: TileIndex) -> u64 {
+        self.tile(at).map_or(0, |tile| tile.reached)
+    }
+
     /// Whether a wave has reached the cell.
     pub(crate) fn is_reached(&self, cell: Cell) -> bool {
         TileIndex::of(cell)

@@ -1,11 +1,13 @@
 //! Pictures of a run, all from its trace.
 
 mod animation;
+#[cfg(not(target_arch = "wasm32"))]
 mod coverage;
 mod oblique;
 mod top;
 
 pub use animation::{animate, animation};
+#[cfg(not(target_arch = "wasm32"))]
 pub use coverage::coverage_plot;
 pub use oblique::oblique_view;
 pub(super) use oblique::{Block, oblique};

@@ -1,0 +1,193 @@
+//! A run that goes on tick by tick.
+
+use std::sync::Arc;
+
+use planner_core::map::{Tile, TileIndex};
+use planner_core::{Cell, Direction, RobotId};
+
+use super::book::Book;
+use super::{Host, Outcome, Progress, Scenario, fleet_on};
+use crate::fleet::{Fleet, Robot, Step};
+use crate::medium::Message;
+use crate::sensor::Sensor;
+use crate::trace::{Record, Trace};
+
+/// A run between two ticks, on maps of `TW`×`TH` tiles.
+pub struct Running<const TW: usize, const TH: usize> {
+    scenario: Scenario,
+    fleet: Fleet<TW, TH>,
+    book: Book,
+}
+
+impl<const TW: usize, const TH: usize> Running<TW, TH> {
+    /// A checked scenario before its first tick.
+    ///
+    /// # Panics
+    /// If the world does not fit maps of this size.
+    pub(super) fn new(
+        host: &impl Host,
+        scenario: &Scenario,
+        sensor: Option<Arc<Sensor>>,
+        trace: bool,
+    ) -> Self {
+        let sensor =
+            sensor.unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
+        Self {
+            fleet: fleet_on(host, scenario, sensor.clone()),
+            book: Book::new(scenario, sensor, trace),
+            scenario: scenario.clone(),
+        }
+    }
+
+    /// Runs one tick; false if the run was over before it.
+    pub fn tick(&mut self) -> bool {
+        if self.is_over() {
+            return false;
+        }
+        self.fleet.tick();
+        self.book.note(&self.fleet);
+        true
+    }
+
+    /// Whether every living robot has stopped, or time is up.
+    pub fn is_over(&self) -> bool {
+        self.fleet.ticks() >= self.scenario.max_ticks || self.fleet.has_stopped()
+    }
+
+    /// How far the run has come.
+    pub fn progress(&self) -> Progress {
+        self.book.progress()
+    }
+
+    /// What happened.
+    pub fn end(self) -> (Outcome, Option<Trace>) {
+        self.book.close(&self.scenario, &self.fleet)
+    }
+
+    fn of(&self, robot: usize) -> &Robot<TW, TH> {
+        &self.fleet.robots()[robot]
+    }
+}
+
+/// What can be seen of a robot from outside; its map apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// Its number.
+    pub id: RobotId,
+    /// Where its body is.
+    pub position: Cell,
+    /// Whether it lives.
+    pub alive: bool,
+    /// Whether its body is in the world.
+    pub is_there: bool,
+    /// What it did in the last tick.
+    pub step: Option<Step>,
+    /// Where it is going.
+    pub goal: Option<Cell>,
+    /// Steps to the goal at most, and changes to a longer plan since it last
+    /// learnt anything; `None`: its planner does not tell.
+    pub plan: Option<(u32, u8)>,
+    /// Cells on its map, obstacles included.
+    pub known_cells: u32,
+    /// Frontier cells on its map.
+    pub frontiers: u32,
+}
+
+/// A [`Running`] of any size. Robots are named by index, which is their id.
+pub trait Stepping {
+    /// As [`Running::tick`].
+    fn tick(&mut self) -> bool;
+    /// As [`Running::is_over`].
+    fn is_over(&self) -> bool;
+    /// As [`Running::progress`].
+    fn progress(&self) -> Progress;
+    /// What is run.
+    fn scenario(&self) -> &Scenario;
+    /// What can be seen of a robot.
+    fn robot(&self, robot: usize) -> Seen;
+    /// One tile of a robot's map.
+    fn tile(&self, robot: usize, at: TileIndex) -> Tile;
+    /// The frontier cells of one tile of a robot's map.
+    fn frontier(&self, robot: usize, at: TileIndex) -> u64;
+    /// The cells of one tile that a robot's search over the whole map has reached.
+    fn searched(&self, robot: usize, at: TileIndex) -> u64;
+    /// The next steps of a robot's plan.
+    fn way(&self, robot: usize) -> Vec<Direction>;
+    /// The records of all ticks done.
+    fn records(&self) -> &[Record];
+    /// From now on, remember the messages of each tick.
+    fn listen(&mut self);
+    /// What was said in the last tick, arrived or lost. Empty without
+    /// [`listen`](Self::listen).
+    fn messages(&self) -> &[Message];
+    /// What happened up to now.
+    fn outcome(&self) -> Outcome;
+}
+
+impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
+    fn tick(&mut self) -> bool {
+        Running::tick(self)
+    }
+
+    fn is_over(&self) -> bool {
+        Running::is_over(self)
+    }
+
+    fn progress(&self) -> Progress {
+        Running::progress(self)
+    }
+
+    fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    fn robot(&self, robot: usize) -> Seen {
+        let robot = self.of(robot);
+        let map = robot.planner.map();
+        let role = robot.planner.role();
+        Seen {
+            id: robot.id,
+            position: robot.position,
+            alive: robot.alive,
+            is_there: robot.is_there(),
+            step: robot.step,
+            goal: robot.planner.status().goal,
+            plan: role.map(|role| (role.remaining(), role.changes())),
+            known_cells: map.known_cells(),
+            frontiers: map.frontiers(),
+        }
+    }
+
+    fn tile(&self, robot: usize, at: TileIndex) -> Tile {
+        self.of(robot).planner.map().tile(at)
+    }
+
+    fn frontier(&self, robot: usize, at: TileIndex) -> u64 {
+        self.of(robot).planner.map().frontier(at)
+    }
+
+    fn searched(&self, robot: usize, at: TileIndex) -> u64 {
+        self.of(robot).planner.searched(at)
+    }
+
+    fn way(&self, robot: usize) -> Vec<Direction> {
+        let role = self.of(robot).planner.role();
+        role.into_iter().flat_map(|role| role.way()).collect()
+    }
+
+    fn records(&self) -> &[Record] {
+        self.book.records()
+    }
+
+    fn listen(&mut self) {
+        self.fleet.listen();
+    }
+
+    fn messages(&self) -> &[Message] {
+        self.fleet.messages()
+    }
+
+    fn outcome(&self) -> Outcome {
+        self.book.outcome(&self.scenario, &self.fleet)
+    }
+}

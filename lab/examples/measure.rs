@@ -1,0 +1,82 @@
+//! How many ticks a second can be shown, without a window: 100 robots on 256×256 cells,
+//! or the scenario of an address, and so many ticks of it at most.
+//!
+//! ```sh
+//! cargo run --release -p lab --no-default-features --example measure
+//! ```
+
+use std::fmt::Write;
+
+use egui::epaint::{ClippedPrimitive, Primitive};
+use egui::{Pos2, RawInput, Rect, vec2};
+
+use lab::App;
+use lab::platform::Stopwatch;
+use lab::watch::Verdict;
+
+const CROWD: &str = "map=generate:rooms:256x256:1&robots=100&start=random";
+
+fn main() {
+    let address = std::env::args().nth(1).unwrap_or_else(|| CROWD.into());
+    let app = App::from_address(&address);
+    let most = std::env::args().nth(2).and_then(|most| most.parse().ok());
+    println!("{}", measure(app, most.unwrap_or(usize::MAX)));
+}
+
+/// Plays the lab's scenario to its end, one tick a frame, with everything that a frame
+/// takes but the graphics card: the tick, the layout, and the triangles. Tells the mean
+/// and the slowest frames.
+fn measure(mut app: App, most: usize) -> String {
+    let context = egui::Context::default();
+    let mut frames = Vec::new();
+    let mut triangles = 0;
+    app.playing = false;
+    let whole = Stopwatch::start();
+    while frames.len() < most
+        && app
+            .runs
+            .iter()
+            .any(|run| run.watch.verdict() == Verdict::Running)
+    {
+        let clock = Stopwatch::start();
+        app.tick();
+        let input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0))),
+            ..RawInput::default()
+        };
+        let mut output = context.run_ui(input, |ui| app.ui(ui));
+        // Nobody wants the textures.
+        output.textures_delta.clear();
+        let shapes = context.tessellate(output.shapes, output.pixels_per_point);
+        frames.push(clock.seconds());
+        triangles = triangles.max(shapes.iter().map(count).sum());
+    }
+    let seconds = whole.seconds();
+    frames.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let index = (frames.len() as f64 * share) as usize;
+        1000.0
+            * frames
+                .get(index.min(frames.len().saturating_sub(1)))
+                .unwrap_or(&0.0)
+    };
+    let mut text = String::new();
+    let ticks = frames.len();
+    let _ = write!(
+        text,
+        "{ticks} ticks shown in {seconds:.1} s: {:.0} a second; a frame takes {:.1} ms in the \
+         median, {:.1} ms at most for 99 of 100, {:.1} ms at most; up to {triangles} triangles",
+        ticks as f64 / seconds,
+        at(0.5),
+        at(0.99),
+        at(1.0),
+    );
+    text
+}
+
+fn count(shape: &ClippedPrimitive) -> usize {
+    match &shape.primitive {
+        Primitive::Mesh(mesh) => mesh.indices.len() / 3,
+        Primitive::Callback(_) => 0,
+    }
+}

@@ -1,0 +1,221 @@
+//! The cells of a view as pixels, one each.
+
+use egui::{Color32, ColorImage};
+use host_sim::run::Stepping;
+use planner_core::map::TileIndex;
+use planner_core::{Cell, Direction, Extent};
+
+use crate::colors::{Colors, mix};
+use crate::watch::Watch;
+
+/// What a view shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// The real world; what nobody has seen is pale.
+    World,
+    /// What all robots together have seen.
+    Team,
+    /// What one robot knows.
+    Robot(usize),
+}
+
+/// What is drawn into a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layers {
+    /// Ways of the robots, so many ticks back; 0: none.
+    pub trail: u32,
+    /// Where robots are going.
+    pub goals: bool,
+    /// The steps to which they are committed.
+    pub plans: bool,
+    /// Free cells beside the unknown.
+    pub frontiers: bool,
+    /// Which robot is nearest to each cell, in steps.
+    pub owners: bool,
+    /// Cells on which a robot has stood.
+    pub visited: bool,
+    /// How far the selected robot's search over the whole map has got.
+    pub search: bool,
+    /// Who heard whom in the last tick.
+    pub radio: bool,
+}
+
+/// A trail without an end.
+pub const ALL_TICKS: u32 = 10_000;
+
+impl Default for Layers {
+    fn default() -> Self {
+        Self {
+            trail: ALL_TICKS,
+            goals: true,
+            plans: true,
+            frontiers: true,
+            owners: false,
+            visited: false,
+            search: true,
+            radio: false,
+        }
+    }
+}
+
+/// What is known of a cell.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    Unknown,
+    Free,
+    Obstacle,
+}
+
+/// Every cell of the watched world in its colour, as `subject` has it.
+pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) -> ColorImage {
+    let world = &watch.scenario().world;
+    let extent = world.extent();
+    let state = watch.state();
+    let known = match (subject, state) {
+        (Subject::Robot(robot), Some(state)) => of_robot(state, robot, extent),
+        _ => of_team(watch),
+    };
+    let width = usize::from(extent.width);
+    let at = |cell: Cell| known[cell.y as usize * width + cell.x as usize];
+    let is_frontier = |cell: Cell| {
+        let beside = |next: Cell| extent.contains(next) && at(next) == Known::Unknown;
+        Direction::ALL.iter().any(|&way| beside(cell.step(way)))
+    };
+    let mut pixels = Vec::with_capacity(known.len());
+    for cell in cells(extent) {
+        pixels.push(match (at(cell), subject) {
+            (Known::Free, Subject::World) => colors.free,
+            (Known::Free, _) if layers.frontiers && is_frontier(cell) => colors.frontier,
+            (Known::Free, _) if layers.visited && watch.is_visited(cell) => colors.visited,
+            (Known::Free, _) => colors.free,
+            (Known::Obstacle, _) => colors.obstacle,
+            (Known::Unknown, Subject::World) if !world.is_free(cell) => colors.hidden,
+            (Known::Unknown, Subject::World) if watch.reachable().contains(cell) => colors.unseen,
+            (Known::Unknown, _) => colors.unknown,
+        });
+    }
+    let free = |cell: Cell| at(cell) == Known::Free;
+    if layers.owners && subject != Subject::World {
+        for (pixel, owner) in pixels.iter_mut().zip(owners(watch, free)) {
+            if let Some(owner) = owner.filter(|_| *pixel != colors.frontier) {
+                *pixel = mix(*pixel, colors.robot(owner.into()), 0.3);
+            }
+        }
+    }
+    if let (Subject::Robot(robot), Some(state), true) = (subject, state, layers.search) {
+        for (tile, cells) in tiles(extent).map(|tile| (tile, state.searched(robot, tile))) {
+            for cell in planner_core::map::bits(cells).map(|bit| tile.cell(bit)) {
+                if extent.contains(cell) {
+                    let pixel = &mut pixels[cell.y as usize * width + cell.x as usize];
+                    *pixel = mix(*pixel, colors.searched, 0.6);
+                }
+            }
+        }
+    }
+    ColorImage::new([width, extent.height.into()], pixels)
+}
+
+fn of_team(watch: &Watch) -> Vec<Known> {
+    let world = &watch.scenario().world;
+    let known = |cell: Cell| match (watch.is_seen(cell), world.is_free(cell)) {
+        (false, _) => Known::Unknown,
+        (true, true) => Known::Free,
+        (true, false) => Known::Obstacle,
+    };
+    cells(world.extent()).map(known).collect()
+}
+
+fn of_robot(state: &dyn Stepping, robot: usize, extent: Extent) -> Vec<Known> {
+    let width = usize::from(extent.width);
+    let mut known = vec![Known::Unknown; extent.cells() as usize];
+    for at in tiles(extent) {
+        let tile = state.tile(robot, at);
+        for bit in planner_core::map::bits(tile.known) {
+            let cell = at.cell(bit);
+            if extent.contains(cell) {
+                known[cell.y as usize * width + cell.x as usize] = match tile.obstacle >> bit & 1 {
+                    1 => Known::Obstacle,
+                    _ => Known::Free,
+                };
+            }
+        }
+    }
+    known
+}
+
+/// For each free cell the robot from which it can be reached in the fewest steps; of
+/// equals the lowest.
+fn owners(watch: &Watch, free: impl Fn(Cell) -> bool) -> Vec<Option<u8>> {
+    let extent = watch.scenario().world.extent();
+    let index = |cell: Cell| cell.y as usize * usize::from(extent.width) + cell.x as usize;
+    let mut owners = vec![None; extent.cells() as usize];
+    let mut wave = Vec::new();
+    for (cell, robot) in watch.positions().into_iter().zip(0..) {
+        if owners[index(cell)].is_none() {
+            owners[index(cell)] = Some(robot);
+            wave.push(cell);
+        }
+    }
+    let mut next = 0;
+    while let Some(&cell) = wave.get(next) {
+        next += 1;
+        for step in Direction::ALL.map(|way| cell.step(way)) {
+            if extent.contains(step) && free(step) && owners[index(step)].is_none() {
+                owners[index(step)] = owners[index(cell)];
+                wave.push(step);
+            }
+        }
+    }
+    owners
+}
+
+fn tiles(extent: Extent) -> impl Iterator<Item = TileIndex> {
+    let (columns, rows) = (extent.width.div_ceil(8), extent.height.div_ceil(8));
+    (0..rows).flat_map(move |y| (0..columns).map(move |x| TileIndex::new(x as u8, y as u8)))
+}
+
+/// All cells, row by row.
+pub(crate) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
+    let row = move |y| (0..extent.width as i16).map(move |x| Cell::new(x, y));
+    (0..extent.height as i16).flat_map(row)
+}
+
+/// The way of each robot as corners, over the last `trail` ticks before the shown one.
+pub(crate) fn ways(watch: &Watch, trail: u32) -> Vec<Vec<Cell>> {
+    let robots = watch.scenario().starts.len();
+    let mut ways: Vec<Vec<Cell>> = vec![Vec::new(); robots];
+    let begin = match trail {
+        ALL_TICKS.. => 0,
+        ticks => watch.shown().saturating_sub(ticks),
+    };
+    let skipped: usize = watch
+        .records()
+        .partition_point(|record| record.tick < begin);
+    for record in &watch.records()[skipped..] {
+        let Some(way) = ways.get_mut(usize::from(record.robot)) else {
+            continue;
+        };
+        if way.is_empty() {
+            way.push(record.at);
+        }
+        let cell = record.after();
+        if way.last() == Some(&cell) {
+            continue;
+        }
+        if let [.., a, b] = way[..]
+            && (b.x - a.x).signum() == (cell.x - b.x).signum()
+            && (b.y - a.y).signum() == (cell.y - b.y).signum()
+        {
+            way.pop();
+        }
+        way.push(cell);
+    }
+    ways
+}
+
+/// A pixel image as bytes, three a pixel.
+pub(crate) fn rgb(pixels: &[Color32]) -> impl Iterator<Item = u8> + '_ {
+    pixels
+        .iter()
+        .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
+}

@@ -1,0 +1,421 @@
+//! What can be set: map, robots, planner, radio, view, and what can be taken away.
+
+use clap::ValueEnum;
+use egui::{Button, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
+use host_sim::medium::{MediumKind, Reach};
+use host_sim::planners::PlannerKind;
+use host_sim::survey::{Planner, TerrainSource};
+use host_sim::world::{Family, Starts};
+use planner_core::Extent;
+use planner_core::sight::MAX_RADIUS;
+
+use crate::app::App;
+use crate::export;
+use crate::ground::ALL_TICKS;
+use crate::maps::{Map, file_name};
+use crate::platform::{choose_file, save};
+use crate::setup::Setup;
+use crate::survey::{SurveyScene, SurveySetup};
+use crate::view::Tool;
+
+impl App {
+    pub(super) fn menus(&mut self, ui: &mut Ui) {
+        if self.survey.is_some() {
+            return self.survey_menus(ui);
+        }
+        let before = (self.setup.clone(), self.rival);
+        let mut setup = self.setup.clone();
+        title(ui, "Map");
+        self.map(ui, &mut setup);
+        title(ui, "Robots");
+        robots(ui, &mut setup);
+        choice(
+            ui,
+            "planner",
+            &mut setup.planner,
+            PlannerKind::value_variants(),
+        );
+        self.rival(ui);
+        title(ui, "Radio");
+        radio(ui, &mut setup);
+        if (&setup, self.rival) != (&before.0, before.1) {
+            if !self.set(setup) {
+                self.rival = before.1;
+            }
+            self.playing = true;
+        }
+        title(ui, "Pointer");
+        self.tools(ui);
+        title(ui, "View");
+        self.layers(ui);
+        title(ui, "Take away");
+        self.exports(ui);
+    }
+
+    fn map(&mut self, ui: &mut Ui, setup: &mut Setup) {
+        let name = match &setup.map {
+            Map::BuiltIn(name) => (*name).to_owned(),
+            Map::Generated { family, .. } => family.to_string(),
+            Map::Given(world) => world.name().to_owned(),
+        };
+        let mut fresh = None;
+        ComboBox::from_label("map")
+            .selected_text(name)
+            .show_ui(ui, |ui| {
+                for name in Map::built_in() {
+                    if ui
+                        .selectable_label(setup.map == Map::BuiltIn(name), name)
+                        .clicked()
+                    {
+                        fresh = Map::named(name);
+                    }
+                }
+                ui.separator();
+                for family in Family::ALL {
+                    if ui.selectable_label(false, family.to_string()).clicked() {
+                        fresh = Some(Map::Generated {
+                            family,
+                            extent: Extent::new(64, 64),
+                            seed: 1,
+                        });
+                    }
+                }
+            });
+        if let Map::Generated { extent, seed, .. } = &mut setup.map {
+            ui.horizontal(|ui| {
+                number(
+                    ui,
+                    "width",
+                    DragValue::new(&mut extent.width).range(8..=512),
+                );
+                number(
+                    ui,
+                    "height",
+                    DragValue::new(&mut extent.height).range(8..=512),
+                );
+                number(ui, "seed", DragValue::new(seed));
+            });
+        }
+        ui.horizontal(|ui| {
+            if cfg!(target_arch = "wasm32") {
+                if ui.button("Open a file …").clicked() {
+                    choose_file("", &self.inbox, ui.ctx());
+                }
+            } else {
+                let edit = TextEdit::singleline(&mut self.path).hint_text("path of a map or trace");
+                let entered = ui.add(edit.desired_width(150.0)).lost_focus()
+                    && ui.input(|input| input.key_pressed(egui::Key::Enter));
+                if ui.button("Open").clicked() || entered {
+                    choose_file(&self.path, &self.inbox, ui.ctx());
+                }
+            }
+        });
+        ui.label(RichText::new("or drop a map or a trace here").weak());
+        if let Some(map) = fresh {
+            *setup = Setup {
+                map,
+                starts: None,
+                deaths: Vec::new(),
+                arrivals: Vec::new(),
+                ..setup.clone()
+            };
+        }
+    }
+
+    fn rival(&mut self, ui: &mut Ui) {
+        let name = self
+            .rival
+            .map_or("nothing".to_owned(), |rival| rival.to_string());
+        ComboBox::from_label("beside it")
+            .selected_text(name)
+            .show_ui(ui, |ui| {
+                ui.selectable_value(&mut self.rival, None, "nothing");
+                for &planner in PlannerKind::value_variants() {
+                    ui.selectable_value(&mut self.rival, Some(planner), planner.to_string());
+                }
+            });
+    }
+
+    fn tools(&mut self, ui: &mut Ui) {
+        ui.horizontal_wrapped(|ui| {
+            for (tool, name) in Tool::ALL {
+                ui.selectable_value(&mut self.tool, tool, name);
+            }
+        });
+        let hint = match self.tool {
+            Tool::Look => "Click a robot; drag and scroll to move and zoom.",
+            Tool::Wall | Tool::Erase => "Drag over cells; the run begins anew.",
+            Tool::Place => "Click for one more robot; drag one to another start.",
+            Tool::Kill => "Click a robot: from this tick on it is dead.",
+        };
+        ui.label(RichText::new(hint).weak());
+    }
+
+    fn layers(&mut self, ui: &mut Ui) {
+        let layers = &mut self.layers;
+        let trail = Slider::new(&mut layers.trail, 0..=ALL_TICKS).logarithmic(true);
+        let trail = trail
+            .smallest_positive(1.0)
+            .custom_formatter(|ticks, _| match ticks as u32 {
+                ALL_TICKS.. => "all ticks".into(),
+                ticks => format!("{ticks} ticks"),
+            });
+        ui.add(trail.text("ways"));
+        ui.horizontal_wrapped(|ui| {
+            for (shows, name) in [
+                (&mut layers.frontiers, "frontiers"),
+                (&mut layers.goals, "goals"),
+                (&mut layers.plans, "plans"),
+                (&mut layers.owners, "nearest robot"),
+                (&mut layers.visited, "visited"),
+                (&mut layers.search, "search"),
+                (&mut layers.radio, "radio"),
+            ] {
+                ui.checkbox(shows, name);
+            }
+        });
+        if self.layers.radio {
+            let hint = "Lines: heard; dashed: lost. With a crowd, select a robot.";
+            ui.label(RichText::new(hint).weak());
+        }
+    }
+
+    fn exports(&mut self, ui: &mut Ui) {
+        let Some(run) = self.runs.first() else { return };
+        let name = file_name(run.watch.scenario().world.name());
+        let mut done = None;
+        ui.horizontal_wrapped(|ui| {
+            if ui.button("PNG").clicked() {
+                let png = export::png(&run.watch);
+                done = Some(png.and_then(|png| save(&format!("{name}.png"), &png)));
+            }
+            if ui.button("GIF").clicked() {
+                let gif = export::gif(&run.watch.trace());
+                done = Some(gif.and_then(|gif| save(&format!("{name}.gif"), &gif)));
+            }
+            if ui.button("Trace").clicked() {
+                let trace = export::trace(&run.watch.trace());
+                done = Some(trace.and_then(|trace| save(&format!("{name}-trace.csv"), &trace)));
+            }
+            if ui.button("Map").clicked() {
+                let text = run.watch.scenario().world.to_text();
+                let file = run.setup.map.file();
+                let file = file.file_stem().unwrap_or_default().to_string_lossy();
+                done = Some(save(&format!("{file}.txt"), text.as_bytes()));
+            }
+        });
+        let is_replay = run.watch.is_replay();
+        ui.horizontal_wrapped(|ui| {
+            if ui
+                .button("Copy command")
+                .on_hover_text(self.setup.command())
+                .clicked()
+            {
+                ui.ctx().copy_text(self.setup.command());
+                done = Some(Ok(match self.setup.map {
+                    Map::Given(_) => "copied; save the map (button Map) beside it".to_owned(),
+                    _ => "copied".to_owned(),
+                }));
+            }
+            if ui.button("Copy address").clicked() {
+                ui.ctx().copy_text(format!("#{}", self.setup.address()));
+                done = Some(Ok(
+                    "copied: the part of the page's address behind #".to_owned()
+                ));
+            }
+            if ui
+                .add_enabled(is_replay, Button::new("Run again"))
+                .clicked()
+            {
+                self.set(self.setup.clone());
+            }
+        });
+        if let Some(done) = done {
+            self.say(done);
+        }
+        let digest = self.report().digest;
+        if !digest.is_empty() {
+            ui.label(format!("trace digest {digest}"));
+        }
+    }
+
+    pub(super) fn fly(&mut self, setup: SurveySetup) {
+        match SurveyScene::new(setup) {
+            Ok(scene) => {
+                self.survey = Some(scene);
+                self.playing = true;
+            }
+            Err(error) => self.fail(error),
+        }
+    }
+
+    fn survey_menus(&mut self, ui: &mut Ui) {
+        let Some(survey) = &mut self.survey else {
+            return;
+        };
+        let mut setup = survey.setup.clone();
+        title(ui, "Terrain");
+        let (is_urban, mut seed) = match setup.terrain {
+            TerrainSource::Urban(seed) => (true, seed),
+            TerrainSource::Gaussian(seed) => (false, seed),
+            TerrainSource::Town(_) | TerrainSource::File(_) => (false, 0),
+        };
+        let mut urban = is_urban;
+        ui.horizontal(|ui| {
+            ui.selectable_value(&mut urban, false, "hills");
+            ui.selectable_value(&mut urban, true, "town");
+            number(ui, "seed", DragValue::new(&mut seed));
+        });
+        setup.terrain = match urban {
+            true => TerrainSource::Urban(seed),
+            false => TerrainSource::Gaussian(seed),
+        };
+        ui.add(Slider::new(&mut setup.size, 16..=128).text("columns a side"));
+        title(ui, "Drones");
+        ui.add(Slider::new(&mut setup.robots, 1..=32).text("drones"));
+        let name = |planner: &Planner| {
+            let value = planner.to_possible_value();
+            value.map_or(String::new(), |value| value.get_name().to_owned())
+        };
+        ComboBox::from_label("planner")
+            .selected_text(name(&setup.planner))
+            .show_ui(ui, |ui| {
+                for planner in Planner::value_variants() {
+                    ui.selectable_value(&mut setup.planner, *planner, name(planner));
+                }
+            });
+        ui.add(Slider::new(&mut setup.min_altitude, 1.0..=6.0).text("least altitude"));
+        ui.add(Slider::new(&mut setup.ceiling, 20.0..=60.0).text("ceiling"));
+        ui.horizontal(|ui| {
+            number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
+        });
+        title(ui, "View");
+        ui.checkbox(&mut survey.shows_hidden, "ground that was not seen");
+        ui.checkbox(&mut survey.shows_ceiling, "ceiling");
+        let changed = setup != survey.setup;
+        title(ui, "Take away");
+        if ui.button("Copy command").clicked() {
+            ui.ctx().copy_text(survey.setup.command());
+        }
+        if changed {
+            let hidden = (survey.shows_hidden, survey.shows_ceiling);
+            self.fly(setup);
+            if let Some(survey) = &mut self.survey {
+                (survey.shows_hidden, survey.shows_ceiling) = hidden;
+            }
+        }
+    }
+}
+
+fn title(ui: &mut Ui, text: &str) {
+    ui.add_space(6.0);
+    ui.label(RichText::new(text).strong());
+}
+
+/// A number behind its name.
+fn number(ui: &mut Ui, name: &str, value: DragValue<'_>) {
+    let label = ui.label(name);
+    ui.add(value).labelled_by(label.id);
+}
+
+fn choice<T: ValueEnum + PartialEq + Copy + ToString>(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut T,
+    all: &[T],
+) {
+    ComboBox::from_label(name)
+        .selected_text(value.to_string())
+        .show_ui(ui, |ui| {
+            for &other in all {
+                ui.selectable_value(value, other, other.to_string());
+            }
+        });
+}
+
+fn robots(ui: &mut Ui, setup: &mut Setup) {
+    let before = setup.robots;
+    ui.add(
+        Slider::new(&mut setup.robots, 1..=255)
+            .logarithmic(true)
+            .text("robots"),
+    );
+    if setup.robots < before {
+        let left = setup.robots;
+        setup.deaths.retain(|death| death.robot.0 < left);
+        setup.arrivals.retain(|arrival| arrival.robot.0 < left);
+    }
+    let name = match &setup.starts {
+        None => "as the map says",
+        Some(Starts::Center) => "centre",
+        Some(Starts::Corner) => "corner",
+        Some(Starts::Random(_)) => "random",
+        Some(Starts::At(_)) => "placed by hand",
+    };
+    ComboBox::from_label("start")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            for (starts, name) in [
+                (None, "as the map says"),
+                (Some(Starts::Center), "centre"),
+                (Some(Starts::Corner), "corner"),
+                (Some(Starts::Random(setup.seed)), "random"),
+            ] {
+                ui.selectable_value(&mut setup.starts, starts, name);
+            }
+        });
+    ui.add(Slider::new(&mut setup.range, 1..=MAX_RADIUS).text("sensor range"));
+    ui.checkbox(&mut setup.solid, "a cell holds one robot");
+    ui.horizontal(|ui| {
+        number(ui, "seed of the run", DragValue::new(&mut setup.seed));
+    });
+    if let Some(Starts::Random(seed)) = &mut setup.starts {
+        *seed = setup.seed;
+    }
+    if !setup.deaths.is_empty() || !setup.arrivals.is_empty() {
+        let (deaths, arrivals) = (setup.deaths.len(), setup.arrivals.len());
+        ui.horizontal_wrapped(|ui| {
+            ui.label(format!("{deaths} killed, {arrivals} added on the way"));
+            if ui.button("Revive").clicked() {
+                setup.deaths.clear();
+                setup.arrivals.clear();
+            }
+        });
+    }
+}
+
+fn radio(ui: &mut Ui, setup: &mut Setup) {
+    choice(
+        ui,
+        "medium",
+        &mut setup.medium,
+        MediumKind::value_variants(),
+    );
+    ui.add(Slider::new(&mut setup.sync, 0..=50).text("sync every (0: never)"));
+    ui.add(
+        Slider::new(&mut setup.loss, 0.0..=1.0)
+            .max_decimals(2)
+            .text("loss"),
+    );
+    let name = match setup.reach {
+        Reach::Everywhere => "everybody".to_owned(),
+        Reach::LineOfSight => "in sight".to_owned(),
+        Reach::Cells(cells) => format!("{cells} cells"),
+    };
+    ComboBox::from_label("hears")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            ui.selectable_value(&mut setup.reach, Reach::Everywhere, "everybody");
+            ui.selectable_value(&mut setup.reach, Reach::LineOfSight, "in sight");
+            let near = matches!(setup.reach, Reach::Cells(_));
+            if ui.selectable_label(near, "so many cells").clicked() && !near {
+                setup.reach = Reach::Cells(15);
+            }
+        });
+    if let Reach::Cells(cells) = &mut setup.reach {
+        ui.add(Slider::new(cells, 1..=100).text("radio range"));
+    }
+    if setup.medium == MediumKind::Radio {
+        ui.add(Slider::new(&mut setup.byte_budget, 1..=500).text("bytes/tick"));
+    }
+}

@@ -1,0 +1,113 @@
+//! The robot that was clicked: its state, its last decisions, its cost.
+
+use egui::{Grid, RichText, Ui};
+use host_sim::fleet::Deed;
+
+use crate::app::App;
+use crate::decisions::{decisions, name};
+
+/// Decisions that are shown.
+const DECISIONS: usize = 12;
+
+impl App {
+    pub(super) fn robot(&mut self, ui: &mut Ui) {
+        let Some(run) = self.runs.first() else { return };
+        let watch = &run.watch;
+        let robots = watch.scenario().starts.len();
+        let mut chosen = self.selected;
+        ui.horizontal(|ui| {
+            let text = chosen.map_or("all robots".to_owned(), |robot| format!("robot {robot}"));
+            let menu = egui::ComboBox::from_label("looked at").selected_text(text);
+            menu.show_ui(ui, |ui| {
+                ui.selectable_value(&mut chosen, None, "all robots");
+                for robot in 0..robots {
+                    ui.selectable_value(&mut chosen, Some(robot), format!("robot {robot}"));
+                }
+            });
+        });
+        let Some(robot) = chosen.filter(|&robot| robot < robots) else {
+            ui.label("Click a robot to see its map, its state and its decisions.");
+            if let Some(differs) = watch.differs() {
+                ui.label(format!(
+                    "The planners of this program decide otherwise than this trace, first in tick {differs}."
+                ));
+            }
+            self.selected = chosen;
+            return;
+        };
+        let mut kills = false;
+        let mut rows: Vec<(&str, String)> = Vec::new();
+        let record = watch
+            .last_records()
+            .iter()
+            .find(|it| usize::from(it.robot) == robot);
+        if let Some(state) = watch.state() {
+            let seen = state.robot(robot);
+            let deed = match (seen.alive, seen.is_there, seen.step.map(|step| step.deed)) {
+                (false, false, _) => "still to come".into(),
+                (false, ..) => "dead".into(),
+                (true, _, None) => "about to begin".into(),
+                (true, _, Some(deed)) => words(deed),
+            };
+            rows.push(("state", deed));
+            rows.push(("at", seen.position.to_string()));
+            if let Some((remaining, changes)) = seen.plan {
+                let plan = seen
+                    .goal
+                    .map_or("none".into(), |_| format!("{remaining} steps at most"));
+                rows.push(("way to the goal", plan));
+                rows.push(("longer plans since news", changes.to_string()));
+            }
+            rows.push(("cells known", seen.known_cells.to_string()));
+            rows.push(("frontier cells", seen.frontiers.to_string()));
+            kills = seen.alive && !watch.is_replay();
+        }
+        if let Some(record) = record {
+            let goal = record.goal.map_or("none".into(), |goal| goal.to_string());
+            rows.push(("goal", goal));
+            rows.push(("work in this tick", record.work.to_string()));
+            rows.push(("bytes in this tick", record.sent.bytes.to_string()));
+        }
+        let own = || {
+            watch
+                .records()
+                .iter()
+                .filter(|it| usize::from(it.robot) == robot)
+        };
+        let bytes: u64 = own().map(|it| u64::from(it.sent.bytes)).sum();
+        let work = own().map(|it| it.work).max().unwrap_or(0);
+        rows.push(("bytes sent so far", bytes.to_string()));
+        rows.push(("largest work in a tick", work.to_string()));
+        Grid::new("state")
+            .num_columns(2)
+            .striped(true)
+            .show(ui, |ui| {
+                for (what, value) in rows {
+                    ui.label(what);
+                    ui.label(value);
+                    ui.end_row();
+                }
+            });
+        ui.label(RichText::new("Last decisions").strong());
+        for decision in decisions(watch, robot, DECISIONS) {
+            ui.label(format!("{}: {}", decision.tick, decision.text));
+        }
+        if kills && ui.button("Kill this robot").clicked() {
+            self.kill(robot);
+        }
+        ui.separator();
+        self.selected = chosen;
+    }
+}
+
+fn words(deed: Deed) -> String {
+    match deed {
+        Deed::Moved(way) => format!("moved {}", name(way)),
+        Deed::Blocked(way) => format!("was blocked on its way {}", name(way)),
+        Deed::Held(way) => format!("waits for a robot in the {}", name(way)),
+        Deed::Exchanged(way) => format!("exchanged roles with the robot in the {}", name(way)),
+        Deed::Yielded => "gave its role away".into(),
+        Deed::Waited => "waited".into(),
+        Deed::Stopped(stop) => format!("stopped: {stop}"),
+    }
+}

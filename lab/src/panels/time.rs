@@ -1,0 +1,58 @@
+//! Play, pause, single tick, speed, and going back and forth.
+
+use egui::{Slider, Ui};
+
+use crate::app::App;
+
+impl App {
+    pub(super) fn time(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let play = if self.playing { "Pause" } else { "Play" };
+            if ui.button(play).on_hover_text("Space").clicked() {
+                self.play_or_pause();
+            }
+            if ui
+                .button("Tick")
+                .on_hover_text("One tick: right arrow")
+                .clicked()
+            {
+                self.playing = false;
+                match &mut self.survey {
+                    Some(survey) => survey.step(),
+                    None => {
+                        self.tick();
+                    }
+                }
+            }
+            if ui.button("Restart").clicked() {
+                match &self.survey {
+                    Some(survey) => self.fly(survey.setup.clone()),
+                    None if self.runs.iter().any(|run| run.watch.is_replay()) => self.show(0),
+                    None => {
+                        self.set(self.setup.clone());
+                    }
+                }
+                self.playing = true;
+            }
+            ui.add(
+                Slider::new(&mut self.speed, 1.0..=2000.0)
+                    .logarithmic(true)
+                    .max_decimals(0)
+                    .text("ticks/s"),
+            );
+        });
+        if self.survey.is_some() {
+            return;
+        }
+        ui.horizontal(|ui| {
+            let last = self.last_tick();
+            let mut shown = self.shown_tick();
+            ui.spacing_mut().slider_width = (ui.available_width() - 100.0).max(80.0);
+            let slider = Slider::new(&mut shown, 0..=last.max(1)).text("tick");
+            if ui.add(slider).changed() {
+                self.playing = false;
+                self.show(shown);
+            }
+        });
+    }
+}

@@ -1,0 +1,392 @@
+//! A view of the map: the ground as a texture, robots and marks above it, and what the
+//! pointer does to it.
+
+use egui::{
+    Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, pos2, vec2,
+};
+use planner_core::{Cell, Extent};
+
+use crate::colors::{Colors, mix};
+use crate::ground::{self, Layers, Subject};
+use crate::watch::Watch;
+
+/// More messages than this are drawn only for a selected robot.
+pub const MOST_MESSAGES: usize = 1000;
+
+/// What the pointer does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// Selects robots; moves and zooms the view.
+    #[default]
+    Look,
+    /// Draws walls.
+    Wall,
+    /// Erases walls.
+    Erase,
+    /// Places starts, and drags robots to where they start; in a running exploration,
+    /// a robot is added.
+    Place,
+    /// Kills the robot that is clicked.
+    Kill,
+}
+
+impl Tool {
+    /// All of them, with their names and keys.
+    pub const ALL: [(Self, &'static str); 5] = [
+        (Self::Look, "look"),
+        (Self::Wall, "draw walls"),
+        (Self::Erase, "erase walls"),
+        (Self::Place, "place robots"),
+        (Self::Kill, "kill robots"),
+    ];
+}
+
+/// What the pointer did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Deed {
+    /// Clicked a robot, or none.
+    Selected(Option<usize>),
+    /// Draws or erases over this cell.
+    Painted(Cell),
+    /// Clicked this cell to place a robot.
+    Placed(Cell),
+    /// Dragged the robot there.
+    Dragged(usize, Cell),
+    /// Clicked this robot to kill it.
+    Killed(usize),
+}
+
+/// Which part of the map is looked at; the same in all views of one world.
+#[derive(Clone, Copy, Debug)]
+pub struct Camera {
+    /// How much larger than fitting.
+    pub zoom: f32,
+    /// The point of the map in the middle, from 0 to 1 in each direction.
+    pub centre: Pos2,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        Self {
+            zoom: 1.0,
+            centre: pos2(0.5, 0.5),
+        }
+    }
+}
+
+/// One view with its texture.
+#[derive(Default)]
+pub struct View {
+    texture: Option<TextureHandle>,
+    /// What the texture shows.
+    key: Option<Key>,
+    dragged: Option<usize>,
+}
+
+#[derive(Clone, PartialEq)]
+struct Key {
+    run: usize,
+    shown: u32,
+    has_state: bool,
+    subject: Subject,
+    layers: Layers,
+    colors: Colors,
+}
+
+/// What is shown in a view.
+pub struct Frame<'a> {
+    /// The run.
+    pub watch: &'a Watch,
+    /// Differs from run to run.
+    pub run: usize,
+    /// Whose knowledge.
+    pub subject: Subject,
+    /// What is drawn.
+    pub layers: &'a Layers,
+    /// The robot that is looked at more closely.
+    pub selected: Option<usize>,
+    /// What the pointer does.
+    pub tool: Tool,
+}
+
+impl View {
+    /// Draws the view over all of the room that is left; says what the pointer did.
+    pub fn show(&mut self, ui: &mut Ui, camera: &mut Camera, frame: &Frame<'_>) -> Option<Deed> {
+        let colors = Colors::of(ui);
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        let extent = frame.watch.scenario().world.extent();
+        let mut place = Place::new(rect, extent, camera);
+        steer(ui, &response, camera, &place, frame.tool);
+        place = Place::new(rect, extent, camera);
+
+        self.paint_ground(ui, frame, &colors);
+        let painter = ui.painter_at(rect);
+        if let Some(texture) = &self.texture {
+            let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            painter.image(texture.id(), place.map(), uv, Color32::WHITE);
+        }
+        painter.extend(marks(frame, &place, &colors));
+        paint_robots(&painter, frame, &place, &colors);
+        response.widget_info(|| {
+            let about = format!("map, {} robots", frame.watch.scenario().starts.len());
+            egui::WidgetInfo::labeled(egui::Role::Image, true, about)
+        });
+        self.deed(&response, &place, frame)
+    }
+
+    fn paint_ground(&mut self, ui: &Ui, frame: &Frame<'_>, colors: &Colors) {
+        let key = Key {
+            run: frame.run,
+            shown: frame.watch.shown(),
+            has_state: frame.watch.state().is_some(),
+            subject: frame.subject,
+            layers: *frame.layers,
+            colors: *colors,
+        };
+        if self.key.as_ref() == Some(&key) {
+            return;
+        }
+        let image = ground::image(frame.watch, frame.subject, frame.layers, colors);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            None => {
+                let texture = ui
+                    .ctx()
+                    .load_texture("ground", image, TextureOptions::NEAREST);
+                self.texture = Some(texture);
+            }
+        }
+        self.key = Some(key);
+    }
+
+    fn deed(&mut self, response: &Response, place: &Place, frame: &Frame<'_>) -> Option<Deed> {
+        let at = response.interact_pointer_pos();
+        let cell = at.and_then(|at| place.cell(at));
+        let robot = at.and_then(|at| robot_at(frame.watch, place, at));
+        match frame.tool {
+            Tool::Look if response.clicked() => Some(Deed::Selected(robot)),
+            Tool::Look => None,
+            Tool::Wall | Tool::Erase => (response.dragged() || response.clicked())
+                .then_some(cell?)
+                .map(Deed::Painted),
+            Tool::Kill => response.clicked().then_some(robot?).map(Deed::Killed),
+            Tool::Place => {
+                if response.drag_started() {
+                    self.dragged = robot;
+                }
+                if response.drag_stopped()
+                    && let Some(robot) = self.dragged.take()
+                {
+                    return Some(Deed::Dragged(robot, cell?));
+                }
+                response.clicked().then_some(cell?).map(Deed::Placed)
+            }
+        }
+    }
+}
+
+/// Moves and zooms.
+fn steer(ui: &Ui, response: &Response, camera: &mut Camera, place: &Place, tool: Tool) {
+    if tool == Tool::Look && response.dragged() {
+        let moved = response.drag_delta() / place.map().size();
+        camera.centre -= moved;
+    }
+    if let Some(pointer) = response.hover_pos() {
+        let (pinch, wheel) = ui.input(|input| (input.zoom_delta(), input.smooth_scroll_delta().y));
+        let factor = pinch * (wheel / 300.0).exp();
+        let zoom = (camera.zoom * factor).clamp(1.0, 40.0);
+        if zoom != camera.zoom {
+            // The point under the pointer stays where it is.
+            let point = (pointer - place.map().min) / place.map().size();
+            let away = point - camera.centre.to_vec2();
+            camera.centre += away * (1.0 - camera.zoom / zoom);
+            camera.zoom = zoom;
+        }
+    }
+    let most = 0.5 - 0.5 / camera.zoom;
+    camera.centre = camera
+        .centre
+        .clamp(pos2(0.5 - most, 0.5 - most), pos2(0.5 + most, 0.5 + most));
+}
+
+/// Where the cells lie on the screen.
+struct Place {
+    /// The top left corner of the map.
+    origin: Pos2,
+    /// Points a cell.
+    scale: f32,
+    extent: Extent,
+}
+
+impl Place {
+    fn new(rect: Rect, extent: Extent, camera: &Camera) -> Self {
+        let size = vec2(extent.width.into(), extent.height.into());
+        let fitting = (rect.width() / size.x).min(rect.height() / size.y);
+        let scale = (fitting * camera.zoom).max(0.01);
+        Self {
+            origin: rect.center() - camera.centre.to_vec2() * size * scale,
+            scale,
+            extent,
+        }
+    }
+
+    fn map(&self) -> Rect {
+        let size = vec2(self.extent.width.into(), self.extent.height.into());
+        Rect::from_min_size(self.origin, size * self.scale)
+    }
+
+    /// The middle of a cell.
+    fn middle(&self, cell: Cell) -> Pos2 {
+        self.origin + vec2(f32::from(cell.x) + 0.5, f32::from(cell.y) + 0.5) * self.scale
+    }
+
+    fn cell(&self, at: Pos2) -> Option<Cell> {
+        let place = (at - self.origin) / self.scale;
+        let cell = Cell::new(place.x.floor() as i16, place.y.floor() as i16);
+        self.extent.contains(cell).then_some(cell)
+    }
+
+    /// Radius of a robot: large enough to be seen and hit on any map.
+    fn robot(&self) -> f32 {
+        (self.scale * 0.42).clamp(3.5, 14.0)
+    }
+
+    /// A little aside, so that the ways of several robots stay apart.
+    fn lane(&self, robot: usize, robots: usize) -> Vec2 {
+        let lanes = robots.min(7) as f32;
+        let lane = (robot % 7) as f32 - (lanes - 1.0) / 2.0;
+        Vec2::splat(lane / lanes * self.scale * 0.6)
+    }
+}
+
+fn robot_at(watch: &Watch, place: &Place, at: Pos2) -> Option<usize> {
+    let near = |cell: Cell| place.middle(cell).distance(at);
+    let positions = watch.positions().into_iter().enumerate();
+    let (robot, distance) = positions
+        .map(|(robot, cell)| (robot, near(cell)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (distance <= place.robot() + 6.0).then_some(robot)
+}
+
+/// Ways, goals, plans and messages.
+fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
+    let watch = frame.watch;
+    let robots = watch.scenario().starts.len();
+    let mut shapes = Vec::new();
+    let is_dim = |robot: usize| frame.selected.is_some_and(|selected| selected != robot);
+    let color = |robot: usize| {
+        let color = colors.robot(robot);
+        if is_dim(robot) {
+            mix(colors.free, color, 0.4)
+        } else {
+            color
+        }
+    };
+    if frame.layers.trail > 0 && frame.subject == Subject::World {
+        let width = (place.scale * 0.12).clamp(1.0, 2.5);
+        for (robot, way) in ground::ways(watch, frame.layers.trail).iter().enumerate() {
+            let lane = place.lane(robot, robots);
+            let points = way.iter().map(|&cell| place.middle(cell) + lane).collect();
+            shapes.push(Shape::line(points, Stroke::new(width, color(robot))));
+        }
+    }
+    let positions = watch.positions();
+    if frame.subject != Subject::World {
+        for record in watch.last_records() {
+            let robot = usize::from(record.robot);
+            let Some(&at) = positions.get(robot) else {
+                continue;
+            };
+            let stroke = Stroke::new((place.scale * 0.15).clamp(1.2, 3.0), color(robot));
+            if let (true, Some(state)) = (frame.layers.plans, watch.state()) {
+                let mut cell = at;
+                let mut points = vec![place.middle(cell)];
+                for step in state.way(robot) {
+                    cell = cell.step(step);
+                    points.push(place.middle(cell));
+                }
+                shapes.push(Shape::line(points, stroke));
+            }
+            if let (true, Some(goal)) = (frame.layers.goals, record.goal) {
+                let (middle, arm) = (place.middle(goal), place.robot() * 0.8);
+                for arm in [vec2(arm, arm), vec2(arm, -arm)] {
+                    shapes.push(Shape::line_segment([middle - arm, middle + arm], stroke));
+                }
+                if !frame.layers.plans || watch.state().is_none() {
+                    let ends = [place.middle(at), middle];
+                    shapes.extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+                }
+            }
+        }
+    }
+    if let (true, Some(state)) = (frame.layers.radio, watch.state()) {
+        let messages = state.messages();
+        let concerns = |from: u8, to: u8| match frame.selected {
+            Some(robot) => usize::from(from) == robot || usize::from(to) == robot,
+            None => messages.len() <= MOST_MESSAGES,
+        };
+        for message in messages.iter().filter(|it| concerns(it.from.0, it.to.0)) {
+            let end = |robot: u8| {
+                positions
+                    .get(usize::from(robot))
+                    .map(|&at| place.middle(at))
+            };
+            if let (Some(from), Some(to)) = (end(message.from.0), end(message.to.0)) {
+                if message.arrived {
+                    let stroke = Stroke::new(1.0, mix(colors.free, colors.ink, 0.5));
+                    shapes.push(Shape::line_segment([from, to], stroke));
+                } else {
+                    let stroke = Stroke::new(1.5, colors.lost);
+                    shapes.extend(Shape::dashed_line(&[from, to], stroke, 3.0, 6.0));
+                }
+            }
+        }
+    }
+    shapes
+}
+
+fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, colors: &Colors) {
+    let radius = place.robot();
+    let state = frame.watch.state();
+    let records = frame.watch.last_records();
+    for (robot, cell) in frame.watch.positions().into_iter().enumerate() {
+        let lives = match state {
+            Some(state) => state.robot(robot).alive,
+            None => {
+                frame.watch.shown() == 0 || records.iter().any(|it| usize::from(it.robot) == robot)
+            }
+        };
+        if state.is_some_and(|state| !state.robot(robot).is_there) {
+            continue;
+        }
+        let middle = place.middle(cell);
+        let color = colors.robot(robot);
+        if lives {
+            painter.circle(middle, radius, color, Stroke::new(1.0, colors.ink));
+        } else {
+            painter.circle(middle, radius, colors.unknown, Stroke::new(2.0, color));
+            let arm = vec2(radius, radius) * 0.6;
+            let stroke = Stroke::new(2.0, colors.lost);
+            painter.line_segment([middle - arm, middle + arm], stroke);
+            painter.line_segment([middle - arm.rot90(), middle + arm.rot90()], stroke);
+        }
+        if frame.selected == Some(robot) {
+            painter.circle_stroke(middle, radius + 4.0, Stroke::new(2.0, colors.ink));
+        }
+        if radius >= 6.0 && lives {
+            let font = FontId::proportional(radius * 1.3);
+            let text = if luminance(color) > 0.5 {
+                Color32::BLACK
+            } else {
+                Color32::WHITE
+            };
+            painter.text(middle, Align2::CENTER_CENTER, robot, font, text);
+        }
+    }
+}
+
+fn luminance(color: Color32) -> f32 {
+    let [red, green, blue, _] = color.to_array().map(f32::from);
+    (0.299 * red + 0.587 * green + 0.114 * blue) / 255.0
+}

@@ -1,0 +1,129 @@
+//! The page in a real browser. `cargo xtask test --only lab-web` builds it, installs the
+//! browser and runs this.
+
+mod browser;
+
+use std::path::Path;
+
+use browser::{Browser, serve};
+use host_sim::run::{self, Options};
+use lab::setup::Setup;
+
+fn page() -> String {
+    let dist = Path::new(env!("CARGO_MANIFEST_DIR")).join("../dist");
+    assert!(
+        dist.join("lab.js").is_file(),
+        "there is no page; `cargo xtask lab-web` builds it"
+    );
+    serve(dist)
+}
+
+/// The digest of a scenario as `host-sim explore` prints it.
+fn on_host(address: &str) -> String {
+    let scenario = Setup::from_address(address).unwrap().scenario().unwrap();
+    let options = Options {
+        trace: true,
+        ..Options::default()
+    };
+    let (_, trace) = run::run(&scenario, options).unwrap();
+    trace.unwrap().digest()
+}
+
+#[test]
+#[ignore = "needs the page and a browser: cargo xtask test --only lab-web"]
+fn the_page_explores_as_the_host_does() {
+    let (page, browser) = (page(), Browser::start(1280, 800));
+
+    // The default scenario plays by itself, to its end.
+    browser.open(&page);
+    browser.wait("state", |state| state == "running" || state == "complete");
+    browser.wait("state", |state| state == "complete");
+    assert_eq!(browser.data("digest"), on_host(""));
+
+    // An address is the scenario; the same digest here and there.
+    for address in [
+        "map=generate:rooms:40x30:5&robots=4&start=corner&loss=0.3&seed=3&kill=2@25",
+        "map=circle&planner=minpos&medium=ideal&robots=2&solid",
+        "map=generate:cave:70x50:2&planner=local-frontiers&robots=3&radio-range=12",
+    ] {
+        browser.open(&format!("{page}#{address}"));
+        let ended = |state: &str| state == "complete" || state == "incomplete";
+        browser.wait("state", ended);
+        assert_eq!(browser.data("digest"), on_host(address), "{address}");
+    }
+    assert_eq!(browser.console(), [""; 0]);
+}
+
+#[test]
+#[ignore = "needs the page and a browser: cargo xtask test --only lab-web"]
+fn dropped_maps_are_explored_or_refused_with_a_sentence() {
+    let (page, browser) = (page(), Browser::start(1280, 800));
+    browser.open(&page);
+    browser.wait("state", |state| state == "running");
+
+    browser.drop_file("bad.txt", b"....\n..\n");
+    let error = browser.wait("error", |error| !error.is_empty());
+    assert!(
+        error.starts_with("bad.txt") && error.contains("equally long"),
+        "{error}"
+    );
+    assert_eq!(browser.data("map"), "office");
+
+    browser.drop_file(
+        "tiny.txt",
+        b"##########\n#1.......#\n#.##.###.#\n#........#\n##########\n",
+    );
+    browser.wait("map", |map| map == "tiny");
+    browser.wait("state", |state| state == "complete");
+    assert_eq!(browser.data("error"), "");
+    assert_eq!(browser.console(), [""; 0]);
+}
+
+#[test]
+#[ignore = "needs the page and a browser: cargo xtask test --only lab-web"]
+fn a_bad_address_says_so() {
+    let (page, browser) = (page(), Browser::start(400, 800));
+    browser.open(&format!("{page}#robots=many"));
+    let error = browser.wait("error", |error| !error.is_empty());
+    assert!(error.contains("robots=many"), "{error}");
+    assert_eq!(browser.console(), [""; 0]);
+}
+
+/// 100 robots on 256×256 cells: frames a second in the browser, one tick in each. A
+/// picture of the page is left in `target/`.
+#[test]
+#[ignore = "a measurement: cargo test -p lab --test page -- --ignored --nocapture crowd"]
+fn crowd() {
+    let (page, browser) = (page(), Browser::start(1280, 800));
+    browser.open(&format!(
+        "{page}#map=generate:rooms:256x256:1&robots=100&start=random"
+    ));
+    let mut rates = Vec::new();
+    browser.wait("state", |state| state == "running");
+    for _ in 0..10 {
+        std::thread::sleep(std::time::Duration::from_secs(2));
+        rates.push(format!(
+            "{} at tick {}",
+            browser.data("frames-per-second"),
+            browser.data("ticks")
+        ));
+    }
+    println!("frames a second: {}", rates.join(", "));
+}
+
+/// Pictures of the page, for whoever wants to look at them, in `target/`.
+#[test]
+#[ignore = "for the eye: cargo test -p lab --test page -- --ignored pictures"]
+fn pictures() {
+    let page = page();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target");
+    for (name, width, height) in [("laptop", 1280, 800), ("phone", 400, 800)] {
+        let browser = Browser::start(width, height);
+        browser.open(&page);
+        browser.wait("ticks", |ticks| {
+            ticks.parse().is_ok_and(|ticks: u32| ticks > 250)
+        });
+        let file = folder.join(format!("page-{name}.png"));
+        std::fs::write(file, browser.picture()).unwrap();
+    }
+}

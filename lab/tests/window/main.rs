@@ -1,0 +1,130 @@
+//! The lab's window without a screen: widgets are found and used by their names, and
+//! reviewed pictures of the screen are compared. `UPDATE_SNAPSHOTS=1` writes them anew;
+//! look at them before you commit them.
+
+mod painter;
+
+use egui::{Key, Theme, vec2};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::{Harness, SnapshotOptions};
+use lab::App;
+use painter::Painter;
+
+fn harness(address: &str, width: f32, height: f32, theme: Theme) -> Harness<'static, App> {
+    let mut app = App::from_address(address);
+    app.playing = false;
+    Harness::builder()
+        .with_size(vec2(width, height))
+        .with_theme(theme)
+        .with_max_steps(50)
+        .renderer(Painter::default())
+        .build_ui_state(|ui, app: &mut App| app.ui(ui), app)
+}
+
+fn play(harness: &mut Harness<'static, App>, ticks: u32) {
+    for _ in 0..ticks {
+        harness.state_mut().tick();
+    }
+    harness.run();
+}
+
+fn compare(harness: &mut Harness<'static, App>, name: &str) {
+    let picture = harness.render().unwrap();
+    // Fonts are laid out with floats: an edge may fall the other way elsewhere.
+    let options = SnapshotOptions::new().threshold(2.0).max_failed_pixels(400);
+    egui_kittest::image_snapshot_options(&picture, name, &options);
+}
+
+#[test]
+fn laptop_in_the_light() {
+    let mut harness = harness("", 1280.0, 800.0, Theme::Light);
+    harness.state_mut().layers.trail = 10_000;
+    play(&mut harness, 300);
+    compare(&mut harness, "laptop-light");
+}
+
+#[test]
+fn laptop_in_the_dark_with_a_robot_selected() {
+    let mut harness = harness(
+        "map=generate:cave:64x48:4&robots=5",
+        1280.0,
+        800.0,
+        Theme::Dark,
+    );
+    harness.state_mut().selected = Some(1);
+    harness.state_mut().layers.owners = true;
+    harness.state_mut().layers.radio = true;
+    play(&mut harness, 120);
+    compare(&mut harness, "laptop-dark");
+}
+
+#[test]
+fn phone() {
+    let mut harness = harness("map=circle&robots=2", 390.0, 780.0, Theme::Light);
+    play(&mut harness, 25);
+    compare(&mut harness, "phone");
+    harness.get_by_label("Setup").click();
+    harness.run();
+    compare(&mut harness, "phone-setup");
+}
+
+#[test]
+fn hills_from_above() {
+    let mut harness = harness("", 1280.0, 800.0, Theme::Dark);
+    // No step but those that are asked for.
+    harness.state_mut().speed = 0.0;
+    harness.get_by_label("3-D survey").click();
+    harness.run_steps(2);
+    harness.state_mut().playing = false;
+    harness.state_mut().speed = 60.0;
+    for _ in 0..60 {
+        harness.state_mut().survey.as_mut().unwrap().step();
+    }
+    harness.run();
+    compare(&mut harness, "survey");
+}
+
+#[test]
+fn two_planners_side_by_side() {
+    let mut harness = harness("map=labyrinth1&robots=3", 1280.0, 800.0, Theme::Light);
+    let setup = harness.state().setup.clone();
+    harness.state_mut().rival = Some(host_sim::planners::PlannerKind::LocalFrontiers);
+    harness.state_mut().set(setup);
+    play(&mut harness, 200);
+    compare(&mut harness, "side-by-side");
+}
+
+#[test]
+fn keys_play_and_step() {
+    let mut harness = harness("map=circle", 1280.0, 800.0, Theme::Light);
+    harness.run();
+    harness.key_press(Key::ArrowRight);
+    harness.key_press(Key::ArrowRight);
+    harness.run();
+    assert_eq!(harness.state().shown_tick(), 2);
+    harness.key_press(Key::ArrowLeft);
+    harness.run();
+    assert_eq!(
+        (harness.state().shown_tick(), harness.state().last_tick()),
+        (1, 2)
+    );
+    harness.key_press(Key::Space);
+    harness.run_steps(3);
+    assert!(harness.state().playing);
+    assert!(harness.state().last_tick() > 2);
+}
+
+#[test]
+fn buttons_have_names_and_do_what_they_say() {
+    let mut harness = harness("map=circle", 1280.0, 800.0, Theme::Light);
+    harness.run();
+    harness.get_by_label("Tick").click();
+    harness.run();
+    assert_eq!(harness.state().shown_tick(), 1);
+    harness.get_by_label("draw walls").click();
+    harness.run();
+    assert_eq!(harness.state().tool, lab::view::Tool::Wall);
+    harness.get_by_label("Play").click();
+    harness.run_steps(2);
+    assert!(harness.state().playing);
+}

@@ -242,6 +242,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
 
     /// A served robot takes its frontier cell and those connected to it nearby:
     /// it will see what lies behind them.
+    #[inline(never)] // what it keeps on the stack goes with it
     fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
         let window = Window::around(goal);
         let frontier = window.load(|at| around.map.frontier(at));
@@ -318,8 +319,8 @@ fn connected(rows: &Rows, window: Window, from: Cell, reach: u16) -> Rows {
         *seed = 1 << column;
     }
     for _ in 0..SIDE {
-        let before = found;
-        let grow = |above: u32, row: &mut u32, mask: u32| {
+        let mut grows = false;
+        let mut grow = |above: u32, row: &mut u32, mask: u32| {
             let near = *row | above;
             let mut grown = (near | near << 1 | near >> 1) & mask;
             // Along the row, as far as it goes: at most 31 more.
@@ -330,6 +331,7 @@ fn connected(rows: &Rows, window: Window, from: Cell, reach: u16) -> Rows {
                 }
                 grown = more;
             }
+            grows |= grown & !*row != 0;
             *row |= grown;
             *row
         };
@@ -341,7 +343,7 @@ fn connected(rows: &Rows, window: Window, from: Cell, reach: u16) -> Rows {
         for (row, &mask) in found.iter_mut().zip(&within).rev() {
             below = grow(below, row, mask);
         }
-        if found == before {
+        if !grows {
             break;
         }
     }

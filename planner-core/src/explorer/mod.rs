@@ -33,7 +33,6 @@ pub use role::{Role, exchange};
 
 use closed::ClosedCells;
 use far::{FarSearch, Outcome};
-use lean::Lean;
 use maybe::Maybe;
 use others::Others;
 use role::Plan;
@@ -240,8 +239,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let knows_all = self.others.exploring().all(|other| other.is_fresh(now));
         let aim = Aim {
             goal: self.last_goal,
-            hysteresis: i32::from(self.config.hysteresis),
-            lean: (!knows_all).then(|| Lean::of(id, self.around.position)),
+            hysteresis: self.config.hysteresis,
+            lean: (!knows_all).then_some(id),
         };
         let bonus = self.near.load(&self.around, &mut self.work);
         let mine = if let Some(bonus) = &bonus {
@@ -261,12 +260,13 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         } else if let Some(candidate) = found {
             self.far_again = now.saturating_add(self.config.far_pause);
             self.adopt_plan(candidate);
-        } else if let Some(plan) = self.role.plan {
+        } else if let Some(plan) = &self.role.plan {
+            let (goal, needs_route) = (plan.goal, plan.path.is_empty());
             self.role.since = 0;
             if self.far.is_idle() {
-                if plan.path.is_empty() {
+                if needs_route {
                     self.far_is_doubtful = false;
-                    self.far.start_route(plan.goal);
+                    self.far.start_route(goal);
                 } else if now >= self.far_again {
                     self.start_sweep();
                 }
@@ -379,13 +379,22 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             }
             Outcome::Lost => {
                 // A plan whose rest cannot be found is none.
-                if self.role.plan.is_some_and(|plan| plan.path.is_empty()) {
+                if self
+                    .role
+                    .plan
+                    .as_ref()
+                    .is_some_and(|plan| plan.path.is_empty())
+                {
                     self.role.plan = None;
                 }
             }
         }
         if self.valid_plan().is_none()
-            || self.role.plan.is_some_and(|plan| !plan.path.is_empty())
+            || self
+                .role
+                .plan
+                .as_ref()
+                .is_some_and(|plan| !plan.path.is_empty())
                 && self.next_step().is_none()
         {
             self.role.plan = None;

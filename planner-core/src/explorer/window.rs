@@ -1,11 +1,12 @@
 //! The near decision: the best frontier within the 4×4 tiles around the robot, by
 //! waves over rows of 32 cells.
 
-use super::lean::{self, Lean};
+use super::lean;
 use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
 use crate::map::{TileIndex, bits};
+use crate::planner::RobotId;
 
 /// Side of the window in cells and in tiles.
 pub(crate) const SIDE: usize = 32;
@@ -88,9 +89,9 @@ pub(crate) struct Aim {
     /// that the robot goes on the way it was going.
     pub(crate) goal: Option<Cell>,
     /// By how many steps.
-    pub(crate) hysteresis: i32,
-    /// Set while the robot does not know where others went.
-    pub(crate) lean: Option<Lean>,
+    pub(crate) hysteresis: u8,
+    /// The robot's id while it does not know where others went.
+    pub(crate) lean: Option<RobotId>,
 }
 
 /// A frontier found, and the way to it.
@@ -258,11 +259,12 @@ impl NearSearch {
         }
 
         let mut best: Option<(i32, usize, u32, u32)> = None;
+        let hysteresis = i32::from(aim.hysteresis);
         let largest_gain = aim.lean.map_or(0, |_| lean::LARGEST_GAIN);
         for length in 1..=(SIDE * SIDE) as u32 {
             // No frontier from here on can score better than this.
             let bound =
-                STEP * (length as i32 - aim.hysteresis) - PER_CELL * LARGEST_BONUS - largest_gain;
+                STEP * (length as i32 - hysteresis) - PER_CELL * LARGEST_BONUS - largest_gain;
             if best.is_some_and(|(score, ..)| score <= bound) {
                 break;
             }
@@ -287,10 +289,10 @@ impl NearSearch {
                 for column in bits(u64::from(hits)) {
                     let cell = self.window.cell(y, column);
                     let near_goal = aim.goal.is_some_and(|goal| goal.chebyshev(cell) <= 3);
-                    let preference = if near_goal { aim.hysteresis } else { 0 };
+                    let preference = if near_goal { hysteresis } else { 0 };
                     let score = STEP * (length as i32 - preference)
                         - PER_CELL * bonus.at(y, column)
-                        - aim.lean.map_or(0, |lean| lean.gain(cell));
+                        - aim.lean.map_or(0, |id| lean::gain(id, own, cell));
                     if best.is_none_or(|(least, ..)| score < least) {
                         best = Some((score, y, column, length));
                     }

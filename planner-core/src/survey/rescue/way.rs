@@ -46,8 +46,12 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
 
     /// Begins anew, from `target`.
     pub(super) fn begin(&mut self, target: Option<Cell>) {
-        *self = Self::vacant();
+        // Each by itself: a new `Self` would be made on the stack first.
+        self.layers = [[[0; TW]; TH]; 3];
         self.layer = 1;
+        self.cursor = Tile { x: 0, y: 0 };
+        self.grows = false;
+        self.is_done = false;
         let [first, ..] = &mut self.layers;
         if let Some(cell) = target
             && let Some(word) = word_of(first, cell)

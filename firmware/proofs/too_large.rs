@@ -6,10 +6,14 @@ fn main() -> std::process::ExitCode {
     firmware::explain()
 }
 
-/// As large as RAM in memory-layout.x; the flag of the cell is one byte too many.
+/// LENGTH of RAM in memory-layout.x.
 #[cfg(target_os = "none")]
-static TOO_LARGE: static_cell::ConstStaticCell<[u8; 112 * 1024]> =
-    static_cell::ConstStaticCell::new([0; 112 * 1024]);
+const RAM: usize = 118_016;
+
+/// As large as RAM; the flag of the cell is one byte too many.
+#[cfg(target_os = "none")]
+static TOO_LARGE: static_cell::ConstStaticCell<[u8; RAM]> =
+    static_cell::ConstStaticCell::new([0; RAM]);
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]

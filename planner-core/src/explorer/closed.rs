@@ -75,7 +75,11 @@ impl ClosedCells {
     }
 
     /// The closed cells of a tile. Work: at most 8 comparisons.
+    #[inline] // mostly there are none
     pub(crate) fn mask(&self, at: TileIndex, now: u32) -> u64 {
+        if self.list.is_empty() {
+            return 0;
+        }
         self.list
             .iter()
             .filter(|entry| now < entry.until)

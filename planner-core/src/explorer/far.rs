@@ -8,10 +8,11 @@
 use heapless::Vec;
 
 use super::others::Others;
+use super::patch::{Patch, connected};
 use super::path::Path;
 use super::surroundings::Surroundings;
 use super::wave::{LABELS, Wave};
-use super::window::{Candidate, Rows, SIDE, Window};
+use super::window::Candidate;
 use crate::cell::Cell;
 use crate::map::TileIndex;
 use crate::planner::RobotId;
@@ -20,9 +21,21 @@ use crate::planner::RobotId;
 /// frontiers, before the robot looks for itself alone.
 const PASSES: u8 = 3;
 
-/// Distance at which a served robot also speaks for the frontier cells connected
-/// to its own.
-const REACH: u16 = 2;
+/// What the front of a label in a tile costs, in the unit of work: about as much as a
+/// row of the window.
+const FRONT_WORK: u32 = 4;
+
+/// What each tile beside it costs that the front moves into.
+const BESIDE_WORK: u32 = 3;
+
+/// What speaking for a frontier costs in the same unit.
+const PATCH_WORK: u32 = 10;
+
+/// What following a way back costs at most: its first 256 steps.
+pub(crate) const WAY_WORK: u32 = 128;
+
+/// What the last tile of a slice costs at most, with fronts of every label.
+pub(crate) const LAST_TILE_WORK: u32 = LABELS as u32 * (FRONT_WORK + 4 * BESIDE_WORK);
 
 /// What the far decision has come to.
 #[derive(Clone, Copy, Debug)]
@@ -165,8 +178,8 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         self.stage = Stage::Route { goal };
     }
 
-    /// Goes on with the search for at most `slice` tile operations, each with the
-    /// four tiles beside it, and one operation more for each frontier given to another.
+    /// Goes on with the search for at most `slice` of work, [`LAST_TILE_WORK`], and
+    /// [`WAY_WORK`] where it ends.
     pub(crate) fn advance(
         &mut self,
         around: &Surroundings<TW, TH>,
@@ -174,6 +187,12 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         work: &mut u32,
     ) -> Outcome {
         let end = work.saturating_add(slice);
+        if let Stage::Route { goal } = self.stage
+            && !around.map.is_frontier(goal)
+        {
+            self.stage = Stage::Idle;
+            return Outcome::Lost;
+        }
         while *work < end {
             let outcome = match self.stage {
                 Stage::Idle => return Outcome::Searching,
@@ -198,15 +217,16 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         around: &Surroundings<TW, TH>,
         work: &mut u32,
     ) -> Outcome {
-        *work += 1;
         let Some((at, mut front)) = self.wave.next_front() else {
+            *work += FRONT_WORK;
             return self.next_round(pass, served_before, around.position);
         };
+        *work += FRONT_WORK * u32::from(front == 0);
         let frontier = around.map.frontier(at);
         while front != 0 {
-            *work += 1;
-            let (label, cells) = self.wave.first_label(at, front);
-            front &= !cells;
+            *work += FRONT_WORK;
+            let (label, cells, rest) = self.wave.first_label(at, front);
+            front = rest;
             if self.served >> label & 1 == 1 {
                 continue;
             }
@@ -220,13 +240,14 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             }
             if hits == 0 {
                 let served = self.served;
-                if mine {
-                    self.wave
-                        .spread(at, cells, label, served, |tile| around.open(tile));
-                } else {
-                    self.wave
-                        .spread(at, cells, label, served, |tile| around.free(tile));
-                }
+                *work += BESIDE_WORK
+                    * self.wave.spread(at, cells, label, served, |tile| {
+                        if mine {
+                            around.open(tile)
+                        } else {
+                            around.free(tile)
+                        }
+                    });
                 continue;
             }
             let goal = at.cell(hits.trailing_zeros());
@@ -242,48 +263,41 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
 
     /// A served robot takes its frontier cell and those connected to it nearby:
     /// it will see what lies behind them.
-    #[inline(never)] // what it keeps on the stack goes with it
     fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
-        let window = Window::around(goal);
-        let frontier = window.load(|at| around.map.frontier(at));
-        let taken = connected(&frontier, window, goal, REACH);
-        *work += SIDE as u32;
-        for (at, row, column) in window.tiles() {
-            let mut cells = 0u64;
-            for (row, shift) in taken.iter().skip(row).zip((0..64).step_by(8)) {
-                cells |= u64::from((row >> column) as u8) << shift;
-            }
-            self.wave.take(at, cells);
+        *work += PATCH_WORK;
+        let patch = Patch::around(goal);
+        let frontier = patch.parts().fold(0, |cells, part| {
+            cells | part.to_patch(around.map.frontier(part.at))
+        });
+        let taken = connected(frontier);
+        for part in patch.parts() {
+            self.wave.take(part.at, part.to_tile(taken));
         }
     }
 
     /// One tile of a route's layer.
     fn route_tile(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
-        *work += 1;
+        *work += FRONT_WORK;
         // The robot may have walked into the wave, or the wave reached the robot.
         if self.wave.is_reached(around.position) {
             self.stage = Stage::Idle;
             return Outcome::Found(self.way(goal, around.position, work));
         }
-        if !around.map.is_frontier(goal) {
-            self.stage = Stage::Idle;
-            return Outcome::Lost;
-        }
         let Some((at, front)) = self.wave.next_front() else {
             self.stage = Stage::Idle;
             return Outcome::Lost;
         };
-        self.wave.spread_route(at, front, |tile| around.open(tile));
+        *work += BESIDE_WORK * self.wave.spread_route(at, front, |tile| around.open(tile));
         Outcome::Searching
     }
 
     /// The way from the robot to the goal: as many steps as a path holds, and the
     /// length of all, exact if it fits a path, else not less than it is.
     fn way(&self, goal: Cell, own: Cell, work: &mut u32) -> Candidate {
+        *work += WAY_WORK;
         let mut path = Path::new();
         let mut cell = own;
         while cell != goal {
-            *work += 1;
             match self.wave.direction_at(cell) {
                 Some(step) if path.push_back(step) => cell = cell.step(step),
                 _ => break,
@@ -296,56 +310,4 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         };
         Candidate { goal, length, path }
     }
-}
-
-/// The cells of `rows` 8-connected to `from` within Chebyshev distance `reach`:
-/// passes down and up until nothing is added, at most twice the window's side.
-fn connected(rows: &Rows, window: Window, from: Cell, reach: u16) -> Rows {
-    let mut within = [0; SIDE];
-    let Some((row, column)) = window.place(from) else {
-        return within;
-    };
-    let (reach, centre) = (u32::from(reach), row as u32);
-    let left = column.saturating_sub(reach);
-    let right = (column + reach).min(SIDE as u32 - 1);
-    let columns = (u32::MAX << left) & (u32::MAX >> (SIDE as u32 - 1 - right));
-    for ((masked, &cells), y) in within.iter_mut().zip(rows).zip(0u32..) {
-        if y.abs_diff(centre) <= reach {
-            *masked = cells & columns;
-        }
-    }
-    let mut found = [0; SIDE];
-    if let Some(seed) = found.get_mut(row) {
-        *seed = 1 << column;
-    }
-    for _ in 0..SIDE {
-        let mut grows = false;
-        let mut grow = |above: u32, row: &mut u32, mask: u32| {
-            let near = *row | above;
-            let mut grown = (near | near << 1 | near >> 1) & mask;
-            // Along the row, as far as it goes: at most 31 more.
-            for _ in 0..SIDE {
-                let more = (grown | grown << 1 | grown >> 1) & mask;
-                if more == grown {
-                    break;
-                }
-                grown = more;
-            }
-            grows |= grown & !*row != 0;
-            *row |= grown;
-            *row
-        };
-        let mut above = 0;
-        for (row, &mask) in found.iter_mut().zip(&within) {
-            above = grow(above, row, mask);
-        }
-        let mut below = 0;
-        for (row, &mask) in found.iter_mut().zip(&within).rev() {
-            below = grow(below, row, mask);
-        }
-        if !grows {
-            break;
-        }
-    }
-    found
 }

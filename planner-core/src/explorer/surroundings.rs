@@ -16,7 +16,7 @@ pub(crate) struct Surroundings<const TW: usize, const TH: usize> {
 impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
     /// Free cells of a tile, as far as anybody knows: for the others' waves.
     pub(crate) fn free(&self, at: TileIndex) -> u64 {
-        self.map.tile(at).free()
+        self.map.free(at)
     }
 
     /// Free cells of a tile that did not refuse this robot: for its own waves.

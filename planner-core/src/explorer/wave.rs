@@ -74,23 +74,26 @@ impl WaveTile {
             self.reached &= !self.labelled(labels.trailing_zeros() as u8);
             labels &= labels - 1;
         }
+        for plane in self.mark.iter_mut().chain(&mut self.front) {
+            *plane &= self.reached;
+        }
     }
 
-    /// Adds `cells` to the layer after the one of this parity.
-    fn advance(&mut self, cells: u64, number: u8, parity: usize) {
+    /// Adds `cells`, which nobody has, to the layer after the one of this parity.
+    #[inline(always)] // in the innermost loop
+    fn advance(&mut self, cells: u64, mut number: u8, parity: usize) {
         self.reached |= cells;
-        for (place, plane) in self.mark.iter_mut().enumerate() {
-            *plane = *plane & !cells | cells & all_if(number >> place & 1 == 1);
-        }
         let [even, odd] = &mut self.front;
-        let (now, next) = if parity == 0 {
-            (even, odd)
-        } else {
-            (odd, even)
-        };
-        // A cell that changes hands is not in this layer any more.
-        *now &= !cells;
-        *next |= cells;
+        *(if parity == 0 { odd } else { even }) |= cells;
+        for plane in &mut self.mark {
+            if number == 0 {
+                break;
+            }
+            if number & 1 == 1 {
+                *plane |= cells;
+            }
+            number >>= 1;
+        }
     }
 }
 
@@ -119,7 +122,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
     }
 
-    /// Forgets all waves, but not who is spoken for. Work: two words a row of tiles.
+    /// Forgets all waves, but not who is spoken for. Work: the rows with a front.
     pub(crate) fn clear(&mut self) {
         self.round = self.round.checked_add(1).unwrap_or(1);
         // One stamp in turn is wiped, so none gets so old that its number comes again.
@@ -130,7 +133,9 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         {
             *stamp = Stamp::NONE;
         }
-        self.active = [TileSet::new(); 2];
+        for active in &mut self.active {
+            active.clear();
+        }
         self.layer = 0;
     }
 
@@ -169,6 +174,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         self.tiles.get(usize::from(at.y))?.get(usize::from(at.x))
     }
 
+    #[inline(always)] // in the innermost loop
     fn tile_mut(&mut self, at: TileIndex) -> Option<(&mut WaveTile, &mut Stamp)> {
         let (x, y) = (usize::from(at.x), usize::from(at.y));
         let tile = self.tiles.get_mut(y)?.get_mut(x)?;
@@ -224,16 +230,21 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
         let at = self.active_now().pop_first()?;
         let parity = self.parity();
-        let (tile, _) = self.tile_mut(at)?;
-        Some((at, core::mem::take(tile.front.get_mut(parity)?)))
+        let tile = self.tiles.get_mut(usize::from(at.y))?;
+        let tile = tile.get_mut(usize::from(at.x))?;
+        let [even, odd] = &mut tile.front;
+        let front = if parity == 0 { even } else { odd };
+        Some((at, core::mem::take(front)))
     }
 
-    /// Splits the front of a tile by label: the label of its first cell, and all
-    /// cells that carry it.
-    pub(crate) fn first_label(&self, at: TileIndex, front: u64) -> (u8, u64) {
-        self.tile(at).map_or((0, front), |tile| {
+    /// Splits the front of a tile by label: the label of its first cell, all cells
+    /// that carry it, and the rest. What was given up meanwhile is left out.
+    pub(crate) fn first_label(&self, at: TileIndex, front: u64) -> (u8, u64, u64) {
+        self.stored(at).map_or((0, 0, 0), |tile| {
+            let front = front & tile.reached;
             let label = tile.mark_of(front & front.wrapping_neg());
-            (label, front & tile.labelled(label))
+            let cells = front & tile.labelled(label);
+            (label, cells, front & !cells)
         })
     }
 
@@ -258,6 +269,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
 
     /// Sweep: one step of the wave `label` from `cells` of a tile, into `free`
     /// cells that no wave has reached, or one of a robot in `served` (a bit a label).
+    /// Returns the number of tiles beside that it moves into.
     pub(crate) fn spread(
         &mut self,
         at: TileIndex,
@@ -265,71 +277,64 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         label: u8,
         served: u16,
         free: impl Fn(TileIndex) -> u64,
-    ) {
-        let within = Direction::ALL
-            .into_iter()
-            .fold(0, |moved, direction| moved | shifted(cells, direction));
+    ) -> u32 {
+        let within = shifted(cells, Direction::East)
+            | shifted(cells, Direction::South)
+            | shifted(cells, Direction::West)
+            | shifted(cells, Direction::North);
         self.claim(at, within & free(at), label, served);
+        let mut beside = 0;
         for direction in Direction::ALL {
             let moved = carried(cells, direction);
-            if moved != 0
-                && let Some(next) = at.neighbour(direction)
-            {
+            if moved != 0 {
+                beside += 1;
+                let next = at.beside(direction);
                 self.claim(next, moved & free(next), label, served);
             }
         }
-    }
-
-    fn claim(&mut self, at: TileIndex, cells: u64, label: u8, served: u16) {
-        let parity = self.parity();
-        if cells != 0
-            && let Some((tile, stamp)) = self.tile_mut(at)
-        {
-            if cells & tile.reached != 0 {
-                tile.give_up(served & !stamp.given_up);
-                stamp.given_up |= served;
-            }
-            let open = cells & !tile.reached;
-            if open != 0 {
-                tile.advance(open, label, parity);
-                self.active_next().insert(at);
-            }
-        }
+        beside
     }
 
     /// Route: one step of the wave from `cells` of a tile into `free` cells that
-    /// it has not reached; each gets the direction back.
+    /// it has not reached; each gets the direction back. Returns as [`spread`](Self::spread).
     pub(crate) fn spread_route(
         &mut self,
         at: TileIndex,
         cells: u64,
         free: impl Fn(TileIndex) -> u64,
-    ) {
+    ) -> u32 {
+        let here = free(at);
+        let mut beside = 0;
         for direction in Direction::ALL {
-            self.enter(at, shifted(cells, direction), direction, &free);
+            let back = direction.opposite() as u8;
+            self.claim(at, shifted(cells, direction) & here, back, 0);
             let moved = carried(cells, direction);
-            if moved != 0
-                && let Some(next) = at.neighbour(direction)
-            {
-                self.enter(next, moved, direction, &free);
+            if moved != 0 {
+                beside += 1;
+                let next = at.beside(direction);
+                self.claim(next, moved & free(next), back, 0);
             }
         }
+        beside
     }
 
-    fn enter(
-        &mut self,
-        at: TileIndex,
-        cells: u64,
-        direction: Direction,
-        free: &impl Fn(TileIndex) -> u64,
-    ) {
+    fn claim(&mut self, at: TileIndex, cells: u64, label: u8, served: u16) {
+        if cells == 0 {
+            return;
+        }
         let parity = self.parity();
-        if let Some((tile, _)) = self.tile_mut(at) {
-            let open = cells & !tile.reached & free(at);
-            if open != 0 {
-                tile.advance(open, direction.opposite() as u8, parity);
-                self.active_next().insert(at);
-            }
+        let Some((tile, stamp)) = self.tile_mut(at) else {
+            return;
+        };
+        let mut open = cells & !tile.reached;
+        if open != cells && served & !stamp.given_up != 0 {
+            tile.give_up(served & !stamp.given_up);
+            stamp.given_up |= served;
+            open = cells & !tile.reached;
+        }
+        if open != 0 {
+            tile.advance(open, label, parity);
+            self.active_next().insert(at);
         }
     }
 

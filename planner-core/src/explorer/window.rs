@@ -2,6 +2,7 @@
 //! waves over rows of 32 cells.
 
 use super::lean;
+use super::others::MAX_OTHERS;
 use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
@@ -69,15 +70,6 @@ impl Window {
     }
 }
 
-/// Sets a bit of the rows; ignored outside.
-fn set(rows: &mut Rows, place: Option<(usize, u32)>) {
-    if let Some((row, column)) = place
-        && let Some(row) = rows.get_mut(row)
-    {
-        *row |= 1 << column;
-    }
-}
-
 fn get(rows: &Rows, row: usize, column: u32) -> bool {
     rows.get(row).is_some_and(|row| row >> column & 1 == 1)
 }
@@ -110,6 +102,12 @@ const STEP: i32 = 4;
 const PER_CELL: i32 = 5;
 /// Cells that count at most.
 const LARGEST_BONUS: i32 = 8;
+
+/// Rows and layers that a flood looks at before its last layer.
+const FLOOD: u32 = 448;
+
+/// What a robot's place costs, in the unit of work: a row.
+const OTHER_WORK: u32 = 8;
 
 /// How far every cell of the window is from the visited ones: 1 to 8, less one, a
 /// bit a plane.
@@ -162,28 +160,98 @@ impl Bonus {
     }
 }
 
+/// One row of the fronts of the waves: the robot's own, and those of robots with lower
+/// and with higher ids.
+#[derive(Clone, Copy)]
+struct Fronts {
+    mine: u32,
+    lower: u32,
+    higher: u32,
+}
+
+impl Fronts {
+    const NONE: Self = Self {
+        mine: 0,
+        lower: 0,
+        higher: 0,
+    };
+
+    const fn all(self) -> u32 {
+        self.mine | self.lower | self.higher
+    }
+}
+
+/// One row of what the near decision works on.
+#[derive(Clone, Copy)]
+struct Row {
+    fronts: Fronts,
+    frontier: u32,
+    /// Free cells that no wave has reached.
+    open: u32,
+    /// Direction back to the robot, a bit a plane.
+    back: [u32; 2],
+}
+
+impl Row {
+    const EMPTY: Self = Self {
+        fronts: Fronts::NONE,
+        frontier: 0,
+        open: 0,
+        back: [0; 2],
+    };
+
+    /// One step of all waves, in place, from the rows above and below as they were.
+    #[inline(always)] // in the innermost loop
+    fn advance(&mut self, above: Fronts, below: Fronts) {
+        let here = self.fronts;
+        let mut open = self.open;
+
+        let lower = (here.lower << 1 | here.lower >> 1 | above.lower | below.lower) & open;
+        open &= !lower;
+
+        // Where the wave came from, first match wins: east, south, west, north.
+        let from_east = here.mine >> 1 & open;
+        let from_south = below.mine & open & !from_east;
+        let sideways = from_east | from_south;
+        let from_west = here.mine << 1 & open & !sideways;
+        let from_north = above.mine & open & !(sideways | from_west);
+        let mine = sideways | from_west | from_north;
+        open &= !mine;
+        // Direction numbers: east 0, south 1, west 2, north 3.
+        let [low, high] = &mut self.back;
+        *low |= from_south | from_north;
+        *high |= from_west | from_north;
+
+        let higher = (here.higher << 1 | here.higher >> 1 | above.higher | below.higher) & open;
+        self.open = open & !higher;
+        self.fronts = Fronts {
+            mine,
+            lower,
+            higher,
+        };
+    }
+}
+
 /// The rows that the near decision works on: 0.9 kB, kept in place, off the stack.
 pub(crate) struct NearSearch {
     window: Window,
-    frontier: Rows,
-    open: Rows,
-    /// Direction back to the robot, a bit a plane.
-    parent: [Rows; 2],
-    mine: Rows,
-    lower: Rows,
-    higher: Rows,
+    /// The last row stays empty: below it ends the window.
+    rows: [Row; SIDE + 1],
 }
 
 impl NearSearch {
+    /// What a near decision costs at most: gathering, and two floods with up to two
+    /// places of every robot, a last layer and a way back.
+    pub(crate) const LARGEST_WORK: u32 = {
+        let side = SIDE as u32;
+        let robots = OTHER_WORK * (2 * MAX_OTHERS as u32 + 1);
+        5 * side + 2 * (side + robots + FLOOD + 1 + side + FLOOD / 2)
+    };
+
     pub(crate) const fn new() -> Self {
         Self {
             window: Window { x: 0, y: 0 },
-            frontier: [0; SIDE],
-            open: [0; SIDE],
-            parent: [[0; SIDE]; 2],
-            mine: [0; SIDE],
-            lower: [0; SIDE],
-            higher: [0; SIDE],
+            rows: [Row::EMPTY; SIDE + 1],
         }
     }
 
@@ -195,18 +263,22 @@ impl NearSearch {
     ) -> Option<Bonus> {
         self.window = Window::around(around.position);
         *work += SIDE as u32;
-        self.frontier = self.window.load(|at| around.map.frontier(at));
-        if self.frontier.iter().all(|&row| row == 0) {
+        let frontier = self.window.load(|at| around.map.frontier(at));
+        if frontier.iter().all(|&row| row == 0) {
             return None;
         }
-        *work += 9 * SIDE as u32;
+        for (row, frontier) in self.rows.iter_mut().zip(frontier) {
+            row.frontier = frontier;
+        }
+        *work += 4 * SIDE as u32;
         let visited = self.window.load(|at| around.map.tile(at).visited);
         Some(Bonus::of(visited))
     }
 
     /// The best frontier that the robot is nearer to than anybody else, ties to
     /// the lower id. `others` gives where each other robot is and whether its id is
-    /// lower; without any, every frontier counts.
+    /// lower; without any, every frontier counts. What a flood has not met after
+    /// [`FLOOD`] rows and layers is not near.
     pub(crate) fn best<const TW: usize, const TH: usize>(
         &mut self,
         around: &Surroundings<TW, TH>,
@@ -216,77 +288,78 @@ impl NearSearch {
         work: &mut u32,
     ) -> Option<Candidate> {
         *work += SIDE as u32;
-        self.open = self.window.load(|at| around.open(at));
-        self.lower = [0; SIDE];
-        self.higher = [0; SIDE];
-        for (cell, is_lower) in others {
-            let place = self.window.place(cell);
-            if place.is_some_and(|(row, column)| get(&self.open, row, column)) {
-                let sources = if is_lower {
-                    &mut self.lower
-                } else {
-                    &mut self.higher
-                };
-                set(sources, place);
+        let open = self.window.load(|at| around.open(at));
+        for (row, open) in self.rows.iter_mut().zip(open) {
+            *row = Row {
+                frontier: row.frontier,
+                open,
+                ..Row::EMPTY
+            };
+        }
+        let own = self.window.place(around.position);
+        for ((row, column), is_lower) in others
+            .filter_map(|(cell, is_lower)| Some((self.window.place(cell)?, Some(is_lower))))
+            .chain(own.map(|place| (place, None)))
+        {
+            *work += OTHER_WORK;
+            if let Some(row) = self.rows.get_mut(row) {
+                match is_lower {
+                    Some(true) => row.fronts.lower |= row.open & 1 << column,
+                    Some(false) => row.fronts.higher |= row.open & 1 << column,
+                    None => row.fronts.mine |= 1 << column,
+                }
             }
         }
         self.flood(around.position, aim, bonus, work)
     }
 
     /// Waves from everybody at once, a step a layer; each cell belongs to whoever
-    /// reaches it first. Each layer looks at the rows beside those of its front,
-    /// and each cell is in one front: at most 3 · 1024 rows.
+    /// reaches it first. Each layer looks at the rows beside those of its front.
     fn flood(&mut self, own: Cell, aim: &Aim, bonus: &Bonus, work: &mut u32) -> Option<Candidate> {
-        self.parent = [[0; SIDE]; 2];
-        self.mine = [0; SIDE];
-        set(&mut self.mine, self.window.place(own));
         let mut fronts = 0u32;
-        for y in 0..SIDE {
-            let (Some(open), Some(mine), Some(lower), Some(higher)) = (
-                self.open.get_mut(y),
-                self.mine.get_mut(y),
-                self.lower.get_mut(y),
-                self.higher.get_mut(y),
-            ) else {
-                continue;
-            };
-            *mine &= !*lower;
-            *higher &= !(*mine | *lower);
-            *open &= !(*mine | *lower | *higher);
-            if (*mine | *lower | *higher) != 0 {
-                fronts |= 1 << y;
-            }
+        for (row, y) in self.rows.iter_mut().zip(0..SIDE as u32) {
+            row.fronts.mine &= !row.fronts.lower;
+            row.fronts.higher &= !(row.fronts.mine | row.fronts.lower);
+            let sources = row.fronts.all();
+            row.open &= !sources;
+            fronts |= u32::from(sources != 0) << y;
         }
 
         let mut best: Option<(i32, usize, u32, u32)> = None;
         let hysteresis = i32::from(aim.hysteresis);
         let largest_gain = aim.lean.map_or(0, |_| lean::LARGEST_GAIN);
+        let end = *work + FLOOD;
         for length in 1..=(SIDE * SIDE) as u32 {
             // No frontier from here on can score better than this.
             let bound =
                 STEP * (length as i32 - hysteresis) - PER_CELL * LARGEST_BONUS - largest_gain;
-            if best.is_some_and(|(score, ..)| score <= bound) {
+            if best.is_some_and(|(score, ..)| score <= bound) || *work >= end {
                 break;
             }
-            let rows = fronts | fronts << 1 | fronts >> 1;
+            *work += 1;
+            let mut rows = fronts | fronts << 1 | fronts >> 1;
             fronts = 0;
             let mut mine_left = false;
-            let mut above = (0, 0, 0);
-            let mut row_above = None;
-            for y in bits(u64::from(rows)) {
+            let mut above = Fronts::NONE;
+            while rows != 0 {
                 *work += 1;
-                if row_above != y.checked_sub(1) {
-                    above = (0, 0, 0);
-                }
-                row_above = Some(y);
-                let y = y as usize;
-                let (new_mine, any) = self.flood_row(y, &mut above);
-                if any {
-                    fronts |= 1 << y;
-                }
-                mine_left |= new_mine != 0;
-                let hits = new_mine & self.frontier.get(y).copied().unwrap_or(0);
-                for column in bits(u64::from(hits)) {
+                let y = rows.trailing_zeros() as usize;
+                rows &= rows - 1;
+                let Some([row, below, ..]) = self.rows.get_mut(y..) else {
+                    break;
+                };
+                let before = row.fronts;
+                row.advance(above, below.fronts);
+                // Where a row is left out, no front comes from above.
+                above = if rows >> y & 2 == 0 {
+                    Fronts::NONE
+                } else {
+                    before
+                };
+                fronts |= u32::from(row.fronts.all() != 0) << y;
+                let mine = row.fronts.mine;
+                mine_left |= mine != 0;
+                for column in bits(u64::from(mine & row.frontier)) {
                     let cell = self.window.cell(y, column);
                     let near_goal = aim.goal.is_some_and(|goal| goal.chebyshev(cell) <= 3);
                     let preference = if near_goal { hysteresis } else { 0 };
@@ -305,49 +378,6 @@ impl NearSearch {
         best.map(|(_, row, column, length)| self.trace(row, column, length, work))
     }
 
-    /// One step of all waves in one row, in place. `above` holds the fronts of the
-    /// row above as they were before this layer, and is moved on by one row.
-    /// Returns the own new cells, and whether the row holds any front.
-    fn flood_row(&mut self, y: usize, above: &mut (u32, u32, u32)) -> (u32, bool) {
-        let below = (
-            self.mine.get(y + 1).copied().unwrap_or(0),
-            self.lower.get(y + 1).copied().unwrap_or(0),
-            self.higher.get(y + 1).copied().unwrap_or(0),
-        );
-        let [parent_low, parent_high] = &mut self.parent;
-        let (Some(open), Some(mine), Some(lower), Some(higher)) = (
-            self.open.get_mut(y),
-            self.mine.get_mut(y),
-            self.lower.get_mut(y),
-            self.higher.get_mut(y),
-        ) else {
-            return (0, false);
-        };
-        let here = (*mine, *lower, *higher);
-
-        *lower = (here.1 << 1 | here.1 >> 1 | above.1 | below.1) & *open;
-        *open &= !*lower;
-
-        // Where the wave came from, first match wins: east, south, west, north.
-        let from_east = here.0 >> 1 & *open;
-        let from_south = below.0 & *open & !from_east;
-        let from_west = here.0 << 1 & *open & !(from_east | from_south);
-        let from_north = above.0 & *open & !(from_east | from_south | from_west);
-        *mine = from_east | from_south | from_west | from_north;
-        *open &= !*mine;
-        // Direction numbers: east 0, south 1, west 2, north 3.
-        if let (Some(low), Some(high)) = (parent_low.get_mut(y), parent_high.get_mut(y)) {
-            *low |= from_south | from_north;
-            *high |= from_west | from_north;
-        }
-
-        *higher = (here.2 << 1 | here.2 >> 1 | above.2 | below.2) & *open;
-        *open &= !*higher;
-
-        *above = here;
-        (*mine, (*mine | *lower | *higher) != 0)
-    }
-
     /// Follows the parents back to the robot.
     fn trace(&self, row: usize, column: u32, length: u32, work: &mut u32) -> Candidate {
         let goal = self.window.cell(row, column);
@@ -358,9 +388,11 @@ impl NearSearch {
             let Some((row, column)) = self.window.place(cell) else {
                 break;
             };
-            let [low, high] = &self.parent;
-            let index = u8::from(get(low, row, column)) | u8::from(get(high, row, column)) << 1;
-            let back = Direction::from_index(index);
+            let Some(row) = self.rows.get(row) else {
+                break;
+            };
+            let [low, high] = row.back.map(|plane| (plane >> column & 1) as u8);
+            let back = Direction::from_index(low | high << 1);
             path.push_front(back.opposite());
             cell = cell.step(back);
         }

@@ -184,11 +184,16 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// One tile; outside of the map, obstacles.
     pub fn tile(&self, at: TileIndex) -> Tile {
-        self.tiles
-            .get(usize::from(at.y))
-            .and_then(|row| row.get(usize::from(at.x)))
-            .copied()
-            .unwrap_or(Tile::OUTSIDE)
+        self.stored(at).copied().unwrap_or(Tile::OUTSIDE)
+    }
+
+    /// The free cells of a tile.
+    pub(crate) fn free(&self, at: TileIndex) -> u64 {
+        self.stored(at).map_or(0, |tile| tile.free())
+    }
+
+    fn stored(&self, at: TileIndex) -> Option<&Tile> {
+        self.tiles.get(usize::from(at.y))?.get(usize::from(at.x))
     }
 
     /// One tile without the cells beyond the extent, as robots tell each other.
@@ -200,11 +205,6 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             obstacle: tile.obstacle & inside,
             visited: tile.visited & inside,
         }
-    }
-
-    fn neighbour(&self, at: TileIndex, direction: Direction) -> Tile {
-        at.neighbour(direction)
-            .map_or(Tile::OUTSIDE, |next| self.tile(next))
     }
 
     fn bit(&self, cell: Cell, layer: impl Fn(Tile) -> u64) -> bool {
@@ -251,13 +251,22 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     }
 
     fn frontier_by_neighbours(&self, at: TileIndex) -> u64 {
-        let tile = self.tile(at);
+        let Some(tile) = self.stored(at) else {
+            return 0;
+        };
         let unknown = !tile.known;
-        let mut beside_unknown = 0;
-        for direction in Direction::ALL {
-            let before = !self.neighbour(at, direction.opposite()).known;
-            beside_unknown |= shifted(unknown, direction) | carried(before, direction);
-        }
+        let entering = |direction: Direction| {
+            let before = self.stored(at.beside(direction.opposite()));
+            before.map_or(0, |before| carried(!before.known, direction))
+        };
+        let beside_unknown = shifted(unknown, Direction::East)
+            | shifted(unknown, Direction::South)
+            | shifted(unknown, Direction::West)
+            | shifted(unknown, Direction::North)
+            | entering(Direction::East)
+            | entering(Direction::South)
+            | entering(Direction::West)
+            | entering(Direction::North);
         tile.free() & beside_unknown
     }
 

@@ -86,6 +86,17 @@ impl TileIndex {
         Some((Self { x, y }, bit_of(cell)))
     }
 
+    /// The neighbouring tile. Beyond an edge it is one that no map has.
+    pub(crate) const fn beside(self, direction: Direction) -> Self {
+        let Self { x, y } = self;
+        match direction {
+            Direction::East => Self::new(x.saturating_add(1), y),
+            Direction::South => Self::new(x, y.saturating_add(1)),
+            Direction::West => Self::new(x.wrapping_sub(1), y),
+            Direction::North => Self::new(x, y.wrapping_sub(1)),
+        }
+    }
+
     /// The neighbouring tile, `None` past the western and northern edge.
     pub fn neighbour(self, direction: Direction) -> Option<Self> {
         let (dx, dy) = direction.delta();
@@ -162,9 +173,14 @@ impl<const TH: usize> TileSet<TH> {
         }
     }
 
-    /// Removes every tile. At most `TH` word writes.
+    /// Removes every tile. Work: the rows that hold one.
     pub fn clear(&mut self) {
-        *self = Self::new();
+        for y in bits(self.occupied) {
+            if let Some(row) = self.rows.get_mut(y as usize) {
+                *row = 0;
+            }
+        }
+        self.occupied = 0;
     }
 
     /// Adds a tile; one outside of the map is ignored.
@@ -189,12 +205,12 @@ impl<const TH: usize> TileSet<TH> {
     pub fn pop_first(&mut self) -> Option<TileIndex> {
         let y = self.occupied.trailing_zeros();
         let row = self.rows.get_mut(y as usize)?;
-        let tile = TileIndex {
-            x: row.trailing_zeros() as u8,
-            y: y as u8,
-        };
-        self.remove(tile);
-        Some(tile)
+        let x = row.trailing_zeros() as u8;
+        *row &= row.wrapping_sub(1);
+        if *row == 0 {
+            self.occupied &= self.occupied.wrapping_sub(1);
+        }
+        Some(TileIndex { x, y: y as u8 })
     }
 
     /// Takes out the first tile behind `tile` in the order of

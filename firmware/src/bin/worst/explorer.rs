@@ -14,24 +14,22 @@ use static_cell::ConstStaticCell;
 use crate::Most;
 use crate::places::{Kind, LOOSE, Place, SIDE};
 
+/// Side of the largest map, in tiles. Every map is held by a planner for this one, so
+/// that it is the map that differs and not what the compiler made of the planner.
+const TILES: usize = 16;
+
+type Robot = Explorer<TILES, TILES>;
+
 /// The robot and what it is told.
-struct Bench<const N: usize> {
-    robot: Explorer<N, N>,
-    map: Map<N, N>,
+struct Bench {
+    robot: Robot,
+    map: Map<TILES, TILES>,
 }
 
-impl<const N: usize> Bench<N> {
-    const fn new() -> Self {
-        Self {
-            robot: Explorer::vacant(),
-            map: Map::vacant(),
-        }
-    }
-}
-
-static SMALL: ConstStaticCell<Bench<4>> = ConstStaticCell::new(Bench::new());
-static MIDDLE: ConstStaticCell<Bench<8>> = ConstStaticCell::new(Bench::new());
-static LARGE: ConstStaticCell<Bench<16>> = ConstStaticCell::new(Bench::new());
+static BENCH: ConstStaticCell<Bench> = ConstStaticCell::new(Bench {
+    robot: Explorer::vacant(),
+    map: Map::vacant(),
+});
 
 /// How far the robot sees, in cells.
 const RANGE: u8 = 5;
@@ -51,16 +49,16 @@ struct Calls {
 
 /// Measures, and prints `name: value` lines.
 pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
-    let (small, middle, large) = (SMALL.take(), MIDDLE.take(), LARGE.take());
+    let bench = BENCH.take();
     for others in [0, 9, MAX_OTHERS as u8] {
-        report(32, others, run(small, stopwatch, others))?;
-        report(64, others, run(middle, stopwatch, others))?;
-        report(128, others, run(large, stopwatch, others))?;
+        for side in [32, 64, 128] {
+            report(side, others, run(bench, stopwatch, side, others))?;
+        }
     }
     Ok(())
 }
 
-fn report(side: u32, others: u8, calls: Calls) -> fmt::Result {
+fn report(side: u16, others: u8, calls: Calls) -> fmt::Result {
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
     let prefix = format_args!("worst_explorer_{side}_others_{others}");
     let of = [
@@ -77,25 +75,23 @@ fn report(side: u32, others: u8, calls: Calls) -> fmt::Result {
     writeln!(out, "{prefix}_work_bound: {}", Config::new().work_bound())
 }
 
-fn run<const N: usize>(bench: &mut Bench<N>, stopwatch: &Stopwatch, others: u8) -> Calls {
+fn run(bench: &mut Bench, stopwatch: &Stopwatch, side: u16, others: u8) -> Calls {
     let mut calls = Calls::default();
+    let extent = Extent::new(side, side);
     for place in Place::all() {
-        decide(bench, stopwatch, place, others, &mut calls);
-        talk(bench, stopwatch, place, &mut calls);
+        decide(bench, stopwatch, place, extent, others, &mut calls);
+        talk(bench, stopwatch, place, extent, &mut calls);
     }
     calls
 }
 
-fn extent<const N: usize>() -> Extent {
-    Extent::new(8 * N as u16, 8 * N as u16)
-}
-
 /// Sets up the robot in a place that it knows.
-fn enter<const N: usize>(bench: &mut Bench<N>, place: Place, others: u8) {
+fn enter(bench: &mut Bench, place: Place, extent: Extent, others: u8) {
     let Bench { robot, map, .. } = bench;
-    let _ = robot.reset(Config::new(), place.id(), extent::<N>(), place.own());
-    let _ = map.reset(extent::<N>());
-    for (x, y) in (0..N as u8).flat_map(|x| (0..N as u8).map(move |y| (x, y))) {
+    let _ = robot.reset(Config::new(), place.id(), extent, place.own());
+    let _ = map.reset(extent);
+    let (columns, rows) = map.tile_extent();
+    for (x, y) in (0..columns).flat_map(|x| (0..rows).map(move |y| (x, y))) {
         let at = TileIndex::new(x, y);
         let mut tile = Tile::UNKNOWN;
         for bit in 0..64 {
@@ -120,14 +116,15 @@ fn enter<const N: usize>(bench: &mut Bench<N>, place: Place, others: u8) {
 
 /// Decides as often as the far search is under way, and after each time that the
 /// goal which was chosen is taken away.
-fn decide<const N: usize>(
-    bench: &mut Bench<N>,
+fn decide(
+    bench: &mut Bench,
     stopwatch: &Stopwatch,
     place: Place,
+    extent: Extent,
     others: u8,
     calls: &mut Calls,
 ) {
-    enter(bench, place, others);
+    enter(bench, place, extent, others);
     let Bench { robot, map, .. } = bench;
     for _ in 0..TICKS {
         let action = calls.tick.of(stopwatch, || robot.tick());
@@ -157,18 +154,13 @@ fn decide<const N: usize>(
 
 /// Looks around from cells in every position within a tile, sends what was seen, and
 /// lets the robot hear it when it knows nothing.
-fn talk<const N: usize>(
-    bench: &mut Bench<N>,
-    stopwatch: &Stopwatch,
-    place: Place,
-    calls: &mut Calls,
-) {
+fn talk(bench: &mut Bench, stopwatch: &Stopwatch, place: Place, extent: Extent, calls: &mut Calls) {
     let Bench { robot, .. } = bench;
     let start = place.own();
     let mut frames = [(0, [0; MAX_LEN]); FRAMES];
     let mut free = frames.iter_mut();
     // In the name of another.
-    let _ = robot.reset(Config::new(), RobotId(1), extent::<N>(), start);
+    let _ = robot.reset(Config::new(), RobotId(1), extent, start);
     for step in 0..24 {
         let centre = Cell::new(8 + step % 5 * 3, 8 + step / 5 * 3);
         let is_outside = |cell: Cell| cell.x >= SIDE || cell.y >= SIDE;
@@ -184,7 +176,7 @@ fn talk<const N: usize>(
             }
         }
     }
-    let _ = robot.reset(Config::new(), place.id(), extent::<N>(), start);
+    let _ = robot.reset(Config::new(), place.id(), extent, start);
     for (length, frame) in &frames {
         let frame = frame.get(..*length).unwrap_or_default();
         let _ = calls.receive.of(stopwatch, || robot.receive(frame));

@@ -1,9 +1,9 @@
 //! How long surveys take with the mathematics that this was built with, and how many
 //! decisions differ from those of another build in the same places:
 //!
-//! `cargo run --release -p host-sim --example survey_maths -- --record decisions.json`
+//! `cargo run --release -p host-sim --example survey_maths -- --record target/decisions.json`
 //! `cargo run --release -p host-sim --example survey_maths --features
-//! planner-core/micromath -- --compare decisions.json`
+//! planner-core/micromath -- --compare target/decisions.json`
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -8,7 +8,7 @@ use super::envelope::{
     CRC, HEADER, Header, Sealed, TAG, VERSION, Writer, optional_cell, packed, unpacked,
 };
 use super::link::{GridId, Key};
-use crate::cell::{Cell, Extent};
+use crate::cell::Extent;
 use crate::map::{TILE, Tile, TileIndex};
 use crate::planner::{Activity, RobotId, Status};
 

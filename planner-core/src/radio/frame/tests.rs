@@ -3,6 +3,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::cell::Cell;
 use crate::radio::envelope::{CHECK, CRC};
 
 const GRID: GridId = GridId(0xcafe);

@@ -1,8 +1,8 @@
-//! Golden traces: the decisions of a few whole explorations, bit for bit.
+//! Golden traces: the decisions of a few whole explorations and surveys, bit for bit.
 //!
-//! `fixtures/golden.txt` names the scenarios and their digests. After a change
-//! that is meant to change decisions, `GOLDEN=refresh cargo test --test golden`
-//! writes the file anew.
+//! `fixtures/golden.txt` and `fixtures/golden-surveys.txt` name the scenarios and their
+//! digests. After a change that is meant to change decisions, `GOLDEN=refresh cargo test
+//! --test golden` writes the files anew.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -12,11 +12,8 @@ use clap::ValueEnum;
 use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
 use host_sim::run::{Options, Scenario, run};
+use host_sim::survey::{self, TerrainSource, voxels};
 use host_sim::world::{ReadOptions, World};
-
-fn file() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/golden.txt")
-}
 
 /// Ticks and digest of the scenario `map planner robots medium loss`.
 fn trace_of(scenario: &str) -> String {
@@ -44,9 +41,50 @@ fn trace_of(scenario: &str) -> String {
     format!("{} {}", outcome.ticks, trace.unwrap().digest())
 }
 
-#[test]
-fn decisions_are_those_of_the_golden_traces() {
-    let golden = std::fs::read_to_string(file()).unwrap();
+/// Steps and digest of the scenario `terrain side planner robots medium loss kill`.
+fn survey_of(scenario: &str) -> String {
+    let fields: Vec<&str> = scenario.split_whitespace().collect();
+    let [terrain, side, planner, robots, medium, loss, kill] = fields[..] else {
+        panic!(
+            "expected `terrain side planner robots medium loss kill`, or `-` for what there is not, found `{scenario}`"
+        );
+    };
+    const SEED: u64 = 1;
+    let (terrain, side): (TerrainSource, u16) = (terrain.parse().unwrap(), side.parse().unwrap());
+    let (robots, loss): (usize, f64) = (robots.parse().unwrap(), loss.parse().unwrap());
+    if let Some(scene) = terrain.scene(side) {
+        assert_eq!([planner, medium, kill], ["voxel-survey", "-", "-"]);
+        let scenario = voxels::Scenario {
+            robots,
+            range: 6,
+            loss,
+            seed: SEED,
+            max_ticks: 20_000,
+        };
+        let trace = voxels::run(&scene, &scenario).unwrap();
+        return format!("{} {}", trace.seen.len() - 1, trace.digest());
+    }
+    let planner = survey::Planner::from_str(planner, false).unwrap();
+    let scenario = survey::Scenario {
+        medium: MediumKind::from_str(medium, false).unwrap(),
+        loss,
+        kills: match kill {
+            "-" => Vec::new(),
+            kill => vec![kill.parse().unwrap()],
+        },
+        ..survey::Scenario::new(planner, robots, SEED)
+    };
+    let trace = survey::run(&terrain.load(side).unwrap(), &scenario).unwrap();
+    format!("{} {}", trace.seen.len() - 1, trace.digest())
+}
+
+/// Compares every line of `file` with what `trace_of` makes of its scenario, or writes
+/// it anew.
+fn check(file: &str, trace_of: impl Fn(&str) -> String) {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("fixtures")
+        .join(file);
+    let golden = std::fs::read_to_string(&file).unwrap();
     let refresh = std::env::var_os("GOLDEN").is_some();
     let mut fresh = String::new();
     for line in golden.lines() {
@@ -58,11 +96,21 @@ fn decisions_are_those_of_the_golden_traces() {
         let found = trace_of(scenario);
         assert!(
             refresh || found == expected,
-            "{scenario}: ticks and digest were {expected}, now {found}; if that is meant: GOLDEN=refresh cargo test --test golden"
+            "{scenario}: length and digest were {expected}, now {found}; if that is meant: GOLDEN=refresh cargo test --test golden"
         );
         writeln!(fresh, "{scenario} = {found}").unwrap();
     }
     if refresh {
-        std::fs::write(file(), fresh).unwrap();
+        std::fs::write(file, fresh).unwrap();
     }
+}
+
+#[test]
+fn explorations_are_those_of_the_golden_traces() {
+    check("golden.txt", trace_of);
+}
+
+#[test]
+fn surveys_are_those_of_the_golden_traces() {
+    check("golden-surveys.txt", survey_of);
 }

@@ -45,12 +45,22 @@ impl Rng {
         self.unit() * core::f32::consts::TAU
     }
 
-    /// A point of the unit sphere, uniform over its area [Renzaglia2019 eq. 6].
+    /// A point of the unit sphere, uniform over its area [Renzaglia2019 eq. 6]; less
+    /// than once in 10¹⁰ times the pole, for a bound on the work.
+    ///
+    /// Cost: 1.27 pairs of numbers on average, 16 at most, and a square root: sine and
+    /// cosine would take ten times as long on a chip without doubles.
+    // [Marsaglia1972]
     pub fn direction(&mut self) -> (f32, f32, f32) {
-        let z = 2.0 * self.unit() - 1.0;
-        let (sin, cos) = math::sin_cos(self.angle());
-        let radius = math::sqrt((1.0 - z * z).max(0.0));
-        (radius * cos, radius * sin, z)
+        for _ in 0..16 {
+            let (u, v) = (2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0);
+            let s = u * u + v * v;
+            if s < 1.0 {
+                let radius = 2.0 * math::sqrt(1.0 - s);
+                return (radius * u, radius * v, 1.0 - 2.0 * s);
+            }
+        }
+        (0.0, 0.0, 1.0)
     }
 }
 
@@ -80,14 +90,21 @@ mod tests {
     }
 
     #[test]
-    fn directions_have_length_one_and_mean_zero() {
+    fn directions_have_length_one_and_are_spread_evenly() {
         let mut rng = Rng::new(1, 1);
         let mut sum = [0.0f32; 3];
+        let mut bands = [[0u32; 10]; 3];
         for _ in 0..10_000 {
             let (x, y, z) = rng.direction();
             assert!((x * x + y * y + z * z - 1.0).abs() < 1e-5);
             sum = [sum[0] + x, sum[1] + y, sum[2] + z];
+            // Equal slices of a sphere have equal areas, along any axis.
+            for (bands, v) in bands.iter_mut().zip([x, y, z]) {
+                bands[((v + 1.0) * 5.0).min(9.0) as usize] += 1;
+            }
         }
         assert!(sum.iter().all(|s| s.abs() < 300.0), "{sum:?}");
+        let mut all = bands.iter().flatten();
+        assert!(all.all(|&n| n.abs_diff(1000) < 120), "{bands:?}");
     }
 }

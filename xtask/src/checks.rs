@@ -134,6 +134,15 @@ const CHECKS: &[Check] = &[
         },
     },
     Check {
+        name: "test-micromath",
+        title: "planner-core's tests with approximate mathematics",
+        run: || {
+            repeatable(cargo(["test", "-p=planner-core", "--features=micromath"]))
+                .run()
+                .map(nothing)
+        },
+    },
+    Check {
         name: "commands",
         title: "the commands in the documents exist",
         run: documents::check,
@@ -152,6 +161,11 @@ const CHECKS: &[Check] = &[
         name: "loop",
         title: "every planner decides on emulated chips as on the host",
         run: firmware::decides_as_the_host,
+    },
+    Check {
+        name: "loop-micromath",
+        title: "with approximate mathematics too, flying robots decide as on the host",
+        run: firmware::decides_as_the_host_with_micromath,
     },
     Check {
         name: "worst",

@@ -136,6 +136,30 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
     Ok(format!("{sum} explorations with the same decisions"))
 }
 
+/// The same of the planners that fly when both sides calculate with micromath, which
+/// is another planner: its traces are compared with its own on the host.
+pub(crate) fn decides_as_the_host_with_micromath() -> Result<String> {
+    const MICROMATH: &str = "--features=planner-core/micromath";
+    install::target(TARGET)?;
+    install::qemu()?;
+    cargo_build(TARGET).args(["--bin=robot", MICROMATH]).run()?;
+    let flash = flash(&path("robot", TARGET))?;
+    let output = show(
+        cargo(["test", "--package=host-sim", "--test=chips", "--locked"])
+            .args([MICROMATH, "--", "--ignored", "--nocapture"])
+            .arg("flying_robots_decide_on_the_chip_as_on_the_host"),
+    )?;
+    print!("{}", output.stdout);
+    let explorations = entry(&output.stdout, "explorations");
+    let Some(explorations) = explorations.filter(|_| output.success()) else {
+        eprint!("{}", output.stderr);
+        bail!("a chip decides otherwise than the host, or does not get so far");
+    };
+    Ok(format!(
+        "{explorations} explorations with the same decisions; flash {flash}"
+    ))
+}
+
 /// Tests of host-sim/tests/chips that let chips explore, and how many whole
 /// explorations they make at least.
 const EXPLORING_TESTS: usize = 3;

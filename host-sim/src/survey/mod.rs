@@ -16,7 +16,7 @@ mod trace;
 pub mod voxels;
 
 pub use mapped::octree;
-pub use run::{Host, Stepping, open, run, run_on};
+pub use run::{Here, Host, Stepping, open, run, run_on};
 pub use scenario::{DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario};
 pub use sensor::look;
 pub use summary::{RobotSummary, Summary};

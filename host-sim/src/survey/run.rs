@@ -38,7 +38,8 @@ pub trait Host {
 }
 
 /// In this process.
-struct Here;
+#[derive(Clone, Copy, Debug)]
+pub struct Here;
 
 impl Host for Here {
     fn surveyor<const T: usize>(

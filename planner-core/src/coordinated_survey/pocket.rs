@@ -2,7 +2,6 @@
 
 use super::CoordinatedSurvey;
 use crate::cell::Cell;
-use crate::math;
 use crate::point::Point;
 use crate::surface::{Bits, Tile};
 
@@ -15,13 +14,27 @@ const OPENNESS: f32 = 0.18;
 /// Radius of the disc around a frontier that is looked at, as a share of the range.
 const NEIGHBOURHOOD: f32 = 1.25;
 
-/// Samples of a disc.
-const SAMPLES: u8 = 16;
-
-/// Angle between two samples: the golden angle, so that they fill the disc evenly
-/// like the seeds of a sunflower.
+/// Samples of the unit disc: number n at radius √((n + ½)/16) and n times the golden
+/// angle of 2.39996, so that they fill the disc evenly like the seeds of a sunflower.
 // [Vogel1979]
-const GOLDEN_ANGLE: f32 = 2.399_96;
+const SAMPLES: [(f32, f32); 16] = [
+    (0.176_776_7, 0.0),
+    (-0.225_771_5, 0.206_826_5),
+    (0.034_555_5, -0.393_771_4),
+    (0.284_574_8, 0.371_17),
+    (-0.522_224_4, -0.092_367_2),
+    (0.494_690_3, -0.314_692_7),
+    (-0.165_454, 0.615_528_2),
+    (-0.315_575_2, -0.607_587_3),
+    (0.684_648_6, 0.250_012_5),
+    (-0.712_247_5, 0.294_029_7),
+    (0.343_330_8, -0.733_739_7),
+    (0.253_759, 0.808_923),
+    (-0.764_763_1, -0.443_156_2),
+    (0.897_125_7, -0.197_270_1),
+    (-0.547_471_7, 0.778_797),
+    (-0.126_534_1, -0.976_083_6),
+];
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// The nearest frontier that belongs to a pocket and that no rival is nearer to.
@@ -53,7 +66,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 if rival_is_nearer {
                     continue;
                 }
-                work += u32::from(SAMPLES);
+                work += SAMPLES.len() as u32;
                 if self.openness(at, NEIGHBOURHOOD * range) < OPENNESS {
                     best = Some((distance, cell));
                 }
@@ -70,11 +83,8 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     pub(super) fn openness(&self, centre: Point, radius: f32) -> f32 {
         let surface = self.knowledge.surface();
         let (mut inside, mut unknown) = (0.0f32, 0.0);
-        for sample in 0..SAMPLES {
-            let number = f32::from(sample);
-            let reach = radius * math::sqrt((number + 0.5) / f32::from(SAMPLES));
-            let (sin, cos) = math::sin_cos(GOLDEN_ANGLE * number);
-            let cell = centre.offset(reach * cos, reach * sin, 0.0).cell();
+        for (x, y) in SAMPLES {
+            let cell = centre.offset(radius * x, radius * y, 0.0).cell();
             if surface.extent().contains(cell) {
                 inside += 1.0;
                 unknown += f32::from(u8::from(surface.is_unknown(cell)));
@@ -92,4 +102,19 @@ fn tiles_within(centre: Point, radius: f32) -> impl Iterator<Item = Tile> {
     };
     let (first, last) = (corner(-radius), corner(radius));
     (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| Tile { x, y }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_the_seeds_of_a_sunflower() {
+        for (number, (x, y)) in (0u8..).zip(SAMPLES) {
+            let number = f32::from(number);
+            let (radius, angle) = (libm::sqrtf((number + 0.5) / 16.0), 2.399_96 * number);
+            assert!((radius * libm::cosf(angle) - x).abs() < 1e-5, "{number}");
+            assert!((radius * libm::sinf(angle) - y).abs() < 1e-5, "{number}");
+        }
+    }
 }

@@ -2,11 +2,13 @@
 
 use core::fmt;
 
-use crc::{CRC_16_IBM_SDLC, Crc, NoTable};
 use heapless::Vec;
 
+use super::envelope::{
+    CRC, HEADER, Header, Sealed, TAG, VERSION, Writer, optional_cell, packed, unpacked,
+};
 use super::link::{GridId, Key};
-use crate::cell::{Cell, Extent};
+use crate::cell::Extent;
 use crate::map::{TILE, Tile, TileIndex};
 use crate::planner::{Activity, RobotId, Status};
 
@@ -17,24 +19,16 @@ pub const MAX_LEN: usize = 55;
 /// Tiles in a frame at most.
 pub const MAX_TILES: usize = 2;
 
-/// The format that this code writes, and the only one that it reads.
-pub(super) const VERSION: u8 = 1;
 /// The kind of frame that carries tiles of an occupancy grid.
 const OCCUPANCY: u8 = 1;
 
-/// Bytes before the tiles.
-const HEADER: usize = 14;
+/// Bytes between the header and the tiles.
+const STATUS: usize = 7;
 /// Bytes of a tile: column, row, two bits a cell.
 const RECORD: usize = 18;
-/// Bytes of the CRC.
-pub(super) const CRC: usize = 2;
-/// Bytes of the keyed tag, which takes the place of the CRC.
-pub(super) const TAG: usize = 4;
 
-const _: () = assert!(HEADER + MAX_TILES * RECORD + TAG <= MAX_LEN);
-const _: () = assert!(HEADER + MAX_TILES * RECORD + CRC <= MAX_LEN);
-
-pub(super) const CHECK: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_SDLC);
+const _: () = assert!(HEADER + STATUS + MAX_TILES * RECORD + TAG <= MAX_LEN);
+const _: () = assert!(HEADER + STATUS + MAX_TILES * RECORD + CRC <= MAX_LEN);
 
 /// A tile of a map and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,11 +121,12 @@ impl Frame {
     ///
     /// Cells must lie on the grid: coordinates are written with 12 bits.
     pub fn encode(&self, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
-        let mut writer = Writer::new(buffer);
-        writer.put(&[VERSION, OCCUPANCY]);
-        writer.put(&self.grid.0.to_le_bytes());
-        writer.put(&[self.sender.0]);
-        writer.put(&self.sequence.to_le_bytes());
+        let header = Header {
+            grid: self.grid,
+            sender: self.sender,
+            sequence: self.sequence,
+        };
+        let mut writer = Writer::new(OCCUPANCY, header, buffer);
         let activity = match self.status.activity {
             Activity::Exploring => 0,
             Activity::SecondChance => 1,
@@ -159,48 +154,18 @@ impl Frame {
         grid: GridId,
         extent: Extent,
     ) -> Result<Self, FrameError> {
-        let check_bytes = if key.is_some() { TAG } else { CRC };
         let wrong_length = FrameError::Length(bytes.len());
-        let body = bytes.len().checked_sub(check_bytes).ok_or(wrong_length)?;
-        let (body, check) = bytes.split_at_checked(body).ok_or(wrong_length)?;
-        let (header, records) = body.split_first_chunk::<HEADER>().ok_or(wrong_length)?;
+        let sealed = Sealed::new(bytes, key)?;
+        let (status, records) = sealed
+            .payload
+            .split_first_chunk::<STATUS>()
+            .ok_or(wrong_length)?;
         let (records, rest) = records.as_chunks::<RECORD>();
         if !rest.is_empty() || records.len() > MAX_TILES {
             return Err(wrong_length);
         }
-        let &[
-            version,
-            kind,
-            g0,
-            g1,
-            sender,
-            s0,
-            s1,
-            state,
-            p0,
-            p1,
-            p2,
-            q0,
-            q1,
-            q2,
-        ] = header;
-        if version != VERSION {
-            return Err(FrameError::Version(version));
-        }
-        if kind != OCCUPANCY {
-            return Err(FrameError::Kind(kind));
-        }
-        let intact = match key {
-            Some(key) => key.tag(body) == check,
-            None => CHECK.checksum(body).to_le_bytes() == check,
-        };
-        if !intact {
-            return Err(FrameError::Check);
-        }
-        let theirs = GridId(u16::from_le_bytes([g0, g1]));
-        if theirs != grid {
-            return Err(FrameError::OtherGrid(theirs));
-        }
+        let &[state, p0, p1, p2, q0, q1, q2] = status;
+        let header = sealed.open(OCCUPANCY, grid)?;
         let activity = match state & !4 {
             0 => Activity::Exploring,
             1 => Activity::SecondChance,
@@ -211,11 +176,7 @@ impl Frame {
         if !extent.contains(position) {
             return Err(FrameError::Field(Field::Position));
         }
-        let goal = unpacked([q0, q1, q2]);
-        let has_goal = state & 4 != 0;
-        if !has_goal && [q0, q1, q2] != [0; 3] || !extent.contains(goal) {
-            return Err(FrameError::Field(Field::Goal));
-        }
+        let goal = optional_cell([q0, q1, q2], state & 4 != 0, extent)?;
         let mut tiles = Vec::new();
         for &[x, y, ref codes @ ..] in records {
             let record = TileRecord {
@@ -231,74 +192,17 @@ impl Frame {
             let _ = tiles.push(record);
         }
         Ok(Self {
-            grid: theirs,
-            sender: RobotId(sender),
-            sequence: u16::from_le_bytes([s0, s1]),
+            grid: header.grid,
+            sender: header.sender,
+            sequence: header.sequence,
             status: Status {
                 position,
-                goal: has_goal.then_some(goal),
+                goal,
                 activity,
             },
             tiles,
         })
     }
-}
-
-/// Writes into the front of a buffer; what does not fit is left out, which the
-/// assertions above rule out.
-pub(super) struct Writer<'a> {
-    buffer: &'a mut [u8; MAX_LEN],
-    length: usize,
-}
-
-impl<'a> Writer<'a> {
-    pub(super) const fn new(buffer: &'a mut [u8; MAX_LEN]) -> Self {
-        Self { buffer, length: 0 }
-    }
-
-    /// Writes the check bytes behind all the rest; returns the length of the frame.
-    pub(super) fn finish(mut self, key: Option<&Key>) -> usize {
-        match key {
-            Some(key) => {
-                let tag = key.tag(self.written());
-                self.put(&tag);
-            }
-            None => {
-                let check = CHECK.checksum(self.written());
-                self.put(&check.to_le_bytes());
-            }
-        }
-        self.length
-    }
-
-    pub(super) fn put(&mut self, bytes: &[u8]) {
-        let end = self.length + bytes.len();
-        if let Some(place) = self.buffer.get_mut(self.length..end) {
-            place.copy_from_slice(bytes);
-            self.length = end;
-        }
-    }
-
-    fn written(&self) -> &[u8] {
-        self.buffer.get(..self.length).unwrap_or(&[])
-    }
-}
-
-/// A cell in three bytes: 12 bits of `x`, then 12 bits of `y`, low bits first.
-pub(super) const fn packed(cell: Cell) -> [u8; 3] {
-    let (x, y) = (cell.x as u16, cell.y as u16);
-    [
-        x as u8,
-        (x >> 8 & 15) as u8 | (y << 4) as u8,
-        (y >> 4) as u8,
-    ]
-}
-
-pub(super) const fn unpacked([a, b, c]: [u8; 3]) -> Cell {
-    Cell::new(
-        (a as u16 | (b as u16 & 15) << 8) as i16,
-        (b as u16 >> 4 | (c as u16) << 4) as i16,
-    )
 }
 
 /// Two bits a cell, cell 0 in the lowest: 0 unknown, 1 free, 2 visited, 3 obstacle.

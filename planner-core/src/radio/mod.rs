@@ -5,6 +5,7 @@
 //! repetition of the same frames gives the same map; what it says of the sender is
 //! a hint with a sequence number. `docs/wire-format.md` has the byte tables.
 
+mod envelope;
 mod frame;
 mod link;
 mod outbox;

@@ -2,9 +2,8 @@
 
 use heapless::Vec;
 
-use super::frame::{
-    CHECK, CRC, Field, FrameError, MAX_LEN, TAG, VERSION, Writer, packed, unpacked,
-};
+use super::envelope::{HEADER, Header, Sealed, TAG, Writer, optional_cell, packed};
+use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
 use crate::planner::RobotId;
@@ -14,12 +13,12 @@ use crate::survey::Status;
 
 /// The kind of frame that carries columns of a height map.
 const HEIGHTS: u8 = 2;
-/// Bytes before the records.
-const HEADER: usize = 17;
+/// Bytes between the header and the records.
+const STATUS: usize = 10;
 /// Bytes of a record before its heights.
 const RECORD: usize = 6;
 /// Bytes for records: the same with and without a key.
-const ROOM: usize = MAX_LEN - HEADER - TAG;
+const ROOM: usize = MAX_LEN - HEADER - STATUS - TAG;
 
 /// Most columns in one record.
 pub(crate) const MAX_COLUMNS: usize = ROOM - RECORD;
@@ -136,11 +135,12 @@ impl SurfaceFrame {
     /// The target must lie on the grid, and the records fit into 34 bytes together:
     /// those that do not are left out.
     pub fn encode(&self, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
-        let mut writer = Writer::new(buffer);
-        writer.put(&[VERSION, HEIGHTS]);
-        writer.put(&self.grid.0.to_le_bytes());
-        writer.put(&[self.sender.0]);
-        writer.put(&self.sequence.to_le_bytes());
+        let header = Header {
+            grid: self.grid,
+            sender: self.sender,
+            sequence: self.sequence,
+        };
+        let mut writer = Writer::new(HEIGHTS, header, buffer);
         writer.put(&[u8::from(self.stopped) | u8::from(self.target.is_some()) << 1]);
         for coordinate in self.position {
             writer.put(&coordinate.to_le_bytes());
@@ -175,49 +175,16 @@ impl SurfaceFrame {
         extent: Extent,
     ) -> Result<Self, FrameError> {
         let wrong_length = FrameError::Length(bytes.len());
-        let check_bytes = if key.is_some() { TAG } else { CRC };
-        let body = bytes.len().checked_sub(check_bytes).ok_or(wrong_length)?;
-        let (body, check) = bytes.split_at_checked(body).ok_or(wrong_length)?;
-        let (header, mut rest) = body.split_first_chunk::<HEADER>().ok_or(wrong_length)?;
+        let sealed = Sealed::new(bytes, key)?;
+        let (status, mut rest) = sealed
+            .payload
+            .split_first_chunk::<STATUS>()
+            .ok_or(wrong_length)?;
         if rest.len() > ROOM {
             return Err(wrong_length);
         }
-        let &[
-            version,
-            kind,
-            g0,
-            g1,
-            sender,
-            s0,
-            s1,
-            state,
-            x0,
-            x1,
-            y0,
-            y1,
-            z0,
-            z1,
-            t0,
-            t1,
-            t2,
-        ] = header;
-        if version != VERSION {
-            return Err(FrameError::Version(version));
-        }
-        if kind != HEIGHTS {
-            return Err(FrameError::Kind(kind));
-        }
-        let intact = match key {
-            Some(key) => key.tag(body) == check,
-            None => CHECK.checksum(body).to_le_bytes() == check,
-        };
-        if !intact {
-            return Err(FrameError::Check);
-        }
-        let theirs = GridId(u16::from_le_bytes([g0, g1]));
-        if theirs != grid {
-            return Err(FrameError::OtherGrid(theirs));
-        }
+        let &[state, x0, x1, y0, y1, z0, z1, t0, t1, t2] = status;
+        let header = sealed.open(HEIGHTS, grid)?;
         if state & !3 != 0 {
             return Err(FrameError::Field(Field::State));
         }
@@ -226,11 +193,7 @@ impl SurfaceFrame {
         if !extent.contains(Cell::new(x, y)) {
             return Err(FrameError::Field(Field::Position));
         }
-        let target = unpacked([t0, t1, t2]);
-        let has_target = state & 2 != 0;
-        if !has_target && [t0, t1, t2] != [0; 3] || !extent.contains(target) {
-            return Err(FrameError::Field(Field::Goal));
-        }
+        let target = optional_cell([t0, t1, t2], state & 2 != 0, extent)?;
         let mut records = Vec::new();
         while !rest.is_empty() {
             let (record, behind) = decode_record(rest, extent)?;
@@ -239,11 +202,11 @@ impl SurfaceFrame {
             rest = behind;
         }
         Ok(Self {
-            grid: theirs,
-            sender: RobotId(sender),
-            sequence: u16::from_le_bytes([s0, s1]),
+            grid: header.grid,
+            sender: header.sender,
+            sequence: header.sequence,
             position,
-            target: has_target.then_some(target),
+            target,
             stopped: state & 1 != 0,
             records,
         })

@@ -104,7 +104,7 @@ impl RangeScan<'_> {
         let length = if hit { beam.range } else { reach };
         let angle = self.pose.heading + beam.bearing;
         let mut cell = sighting.centre();
-        let (sin, cos) = math::sin_cos(angle);
+        let (sin, cos) = math::exact_sin_cos(angle);
         let mut along_x = Axis::new(self.pose.x, cos);
         let mut along_y = Axis::new(self.pose.y, sin);
 

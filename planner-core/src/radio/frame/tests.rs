@@ -3,6 +3,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::cell::Cell;
+use crate::radio::envelope::{CHECK, CRC};
 
 const GRID: GridId = GridId(0xcafe);
 const EXTENT: Extent = Extent::new(512, 511);
@@ -222,7 +224,7 @@ proptest! {
     #[test]
     fn decoding_undoes_encoding((extent, frame) in any_frame()) {
         let bytes = encoded(&frame, None);
-        prop_assert_eq!(bytes.len(), HEADER + RECORD * frame.tiles.len() + CRC);
+        prop_assert_eq!(bytes.len(), HEADER + STATUS + RECORD * frame.tiles.len() + CRC);
         prop_assert!(bytes.len() <= MAX_LEN);
         prop_assert_eq!(Frame::decode(&bytes, None, frame.grid, extent), Ok(frame));
     }

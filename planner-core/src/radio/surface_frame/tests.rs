@@ -3,6 +3,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::radio::envelope::{CHECK, CRC};
 
 const GRID: GridId = GridId(0xcafe);
 const EXTENT: Extent = Extent::new(100, 61);

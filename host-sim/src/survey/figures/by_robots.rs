@@ -1,0 +1,130 @@
+//! Time to see everything by number of robots, and by loss.
+
+use std::fmt::Write as _;
+
+use planner_core::survey::SetupError;
+
+use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
+use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
+use crate::experiments::Interval;
+use crate::medium::MediumKind;
+use crate::survey::Planner;
+
+pub(super) fn by_robots(terrains: u64) -> Result<Figure, SetupError> {
+    let fleets = [1, 2, 4, 8, 16];
+    let mut rows = Vec::new();
+    for planner in METHODS {
+        for robots in fleets {
+            rows.push(Fleet::new(Setup::new(planner, robots), terrains)?);
+        }
+    }
+    let losses = [0.0, 0.1, 0.3, 0.6];
+    for planner in &METHODS[..3] {
+        for loss in losses {
+            let setup = Setup {
+                medium: MediumKind::Radio,
+                loss,
+                ..Setup::new(*planner, ROBOTS)
+            };
+            rows.push(Fleet::new(setup, terrains)?);
+        }
+    }
+    let greedy = |planner, robots| {
+        let is = |fleet: &&Fleet| fleet.setup == Setup::new(planner, robots);
+        rows.iter()
+            .find(is)
+            .and_then(|fleet| fleet.ticks(2))
+            .map_or(f64::NAN, |i| i.mean)
+    };
+    let mut csv = String::from(
+        "planner,robots,medium,loss,ticks_to_95,ticks_to_99,ticks_to_seen,half_interval,to_greedy,to_greedy_unique,mean_work,max_work\n",
+    );
+    for fleet in &rows {
+        let Setup {
+            planner,
+            robots,
+            medium,
+            loss,
+            ..
+        } = fleet.setup;
+        let [t95, t99, all] =
+            [0, 1, 2].map(|share| fleet.ticks(share).map_or(f64::NAN, |i| i.mean));
+        let half = fleet.ticks(2).map_or(f64::NAN, |i| i.high - i.mean);
+        let work = fleet
+            .mean(|run| Some(run.mean_work()))
+            .map_or(f64::NAN, |i| i.mean);
+        let max = fleet.runs.iter().map(|run| run.max_work).max().unwrap_or(0);
+        let _ = writeln!(
+            csv,
+            "{planner},{robots},{medium},{loss},{t95:.1},{t99:.1},{all:.1},{half:.1},{:.3},{:.3},{work:.0},{max}",
+            all / greedy(Planner::Greedy, robots),
+            all / greedy(Planner::GreedyUnique, robots),
+        );
+    }
+    let of = |planner: Planner, medium| {
+        rows.iter()
+            .filter(move |fleet| fleet.setup.planner == planner && fleet.setup.medium == medium)
+    };
+    let robots = |planner: Planner| {
+        let ratio = |(place, fleet): (usize, &Fleet)| {
+            let all = greedy(Planner::Greedy, fleet.setup.robots);
+            let Interval { mean, low, high } = fleet.ticks(2)?;
+            let share = |value| 100.0 * value / all;
+            let scaled = Interval {
+                mean: share(mean),
+                low: share(low),
+                high: share(high),
+            };
+            Some(point(place as f64, scaled))
+        };
+        of(planner, MediumKind::Ideal)
+            .enumerate()
+            .filter_map(ratio)
+            .collect()
+    };
+    let lossy = |planner: Planner| {
+        let ticks = |(place, fleet): (usize, &Fleet)| Some(point(place as f64, fleet.ticks(2)?));
+        of(planner, MediumKind::Radio)
+            .enumerate()
+            .filter_map(ticks)
+            .collect()
+    };
+    let series = |planner: Planner, points| Series {
+        name: planner.to_string(),
+        color: colour(planner),
+        style: Style::Dots,
+        points,
+    };
+    let places = |of: &[String]| of.to_vec();
+    Ok(Figure {
+        id: "fcao-robots",
+        title: "Time to see everything by number of robots, and by loss".into(),
+        caption: format!(
+            "{terrains} Gaussian terrains of {SIDE}×{SIDE} columns. Left: the mean time as a share \
+             of greedy's, all news exchanged at once. Right: {ROBOTS} robots that learn from one \
+             another by frames of 55 bytes only, five a step, of which a share is lost. Error bars: \
+             95 % confidence over terrains."
+        ),
+        chart: Chart {
+            title: "Number of robots, and loss".into(),
+            panels: vec![
+                Panel {
+                    title: "against greedy".into(),
+                    x: Axis::Places("robots".into(), places(&fleets.map(|n| n.to_string()))),
+                    y: "time of greedy's (%)".into(),
+                    series: METHODS.iter().map(|&p| series(p, robots(p))).collect(),
+                },
+                Panel {
+                    title: format!("{ROBOTS} robots by radio"),
+                    x: Axis::Places(
+                        "share of frames lost".into(),
+                        places(&losses.map(|l| l.to_string())),
+                    ),
+                    y: "ticks until every column is seen".into(),
+                    series: METHODS[..3].iter().map(|&p| series(p, lossy(p))).collect(),
+                },
+            ],
+        },
+        csv,
+    })
+}

@@ -1,0 +1,230 @@
+//! The figures of the paper on the project's own runs [Renzaglia2019 fig. 3, 4, 6],
+//! and the tables behind them.
+
+mod by_robots;
+mod final_times;
+mod over_time;
+mod town;
+mod work;
+
+use planner_core::survey::SetupError;
+use rayon::prelude::*;
+
+use super::{Planner, Scenario, Terrain, Trace, run};
+use crate::draw::chart::{Chart, Point, Series, Style};
+use crate::experiments::{Interval, mean};
+use crate::medium::MediumKind;
+
+/// The methods that are compared, in the order of the legends.
+const METHODS: [Planner; 6] = [
+    Planner::CoordinatedSurvey,
+    Planner::CoordinatedCubic,
+    Planner::Fcao,
+    Planner::Greedy,
+    Planner::GreedyUnique,
+    Planner::ClosestFrontier,
+];
+
+/// Columns along a side of the terrains.
+const SIDE: u16 = 100;
+/// Robots where their number is not varied.
+const ROBOTS: usize = 8;
+
+/// Names of the figures.
+pub const FIGURES: [&str; 5] = ["fcao3", "fcao4", "fcao6", "fcao-robots", "fcao-work"];
+
+/// A figure with the table behind it.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Short name: that of its files.
+    pub id: &'static str,
+    /// What is shown.
+    pub title: String,
+    /// Where it is from, and how it is to be read.
+    pub caption: String,
+    /// What is drawn.
+    pub chart: Chart,
+    /// The numbers, comma-separated.
+    pub csv: String,
+}
+
+/// Makes that one of the [`FIGURES`] over the Gaussian terrains 0 to `terrains` - 1;
+/// `None` if there is no such figure.
+///
+/// # Errors
+/// None with the set-up used here.
+pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, SetupError> {
+    let fleets = || -> Result<Vec<Fleet>, SetupError> {
+        METHODS
+            .iter()
+            .map(|&planner| Fleet::new(Setup::new(planner, ROBOTS), terrains))
+            .collect()
+    };
+    Ok(Some(match id {
+        "fcao3" => over_time::over_time(&fleets()?),
+        "fcao4" => final_times::final_times(&fleets()?),
+        "fcao6" => town::town()?,
+        "fcao-robots" => by_robots::by_robots(terrains)?,
+        "fcao-work" => work::work(terrains.min(10))?,
+        _ => return Ok(None),
+    }))
+}
+
+/// What a fleet is, and on what terrains it flies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Setup {
+    planner: Planner,
+    robots: usize,
+    side: u16,
+    medium: MediumKind,
+    loss: f64,
+}
+
+impl Setup {
+    fn new(planner: Planner, robots: usize) -> Self {
+        Self {
+            planner,
+            robots,
+            side: SIDE,
+            medium: MediumKind::Ideal,
+            loss: 0.0,
+        }
+    }
+}
+
+/// What is kept of a run.
+struct Run {
+    /// Share of columns seen after each number of steps, in percent.
+    seen: Vec<f64>,
+    /// Mean work of the decisions of each step.
+    work: Vec<f64>,
+    max_work: u32,
+    /// Steps to 95, 99 and 100 %; none if never.
+    ticks: [Option<u32>; 3],
+}
+
+impl Run {
+    fn new(trace: &Trace) -> Self {
+        let all = f64::from(trace.extent.cells());
+        let by_tick = trace.records.chunk_by(|a, b| a.tick == b.tick);
+        Self {
+            seen: trace
+                .seen
+                .iter()
+                .map(|&seen| 100.0 * f64::from(seen) / all)
+                .collect(),
+            work: by_tick
+                .map(|step| {
+                    let sum: f64 = step.iter().map(|record| f64::from(record.work)).sum();
+                    sum / step.len() as f64
+                })
+                .collect(),
+            max_work: trace.records.iter().map(|r| r.work).max().unwrap_or(0),
+            ticks: [0.95, 0.99, 1.0].map(|share| trace.ticks_to(share)),
+        }
+    }
+
+    fn mean_work(&self) -> f64 {
+        self.work.iter().sum::<f64>() / self.work.len().max(1) as f64
+    }
+}
+
+/// The runs of one set-up, a terrain each.
+struct Fleet {
+    setup: Setup,
+    runs: Vec<Run>,
+}
+
+impl Fleet {
+    fn new(setup: Setup, terrains: u64) -> Result<Self, SetupError> {
+        let one = |seed| -> Result<Run, SetupError> {
+            let scenario = Scenario {
+                medium: setup.medium,
+                loss: setup.loss,
+                ..Scenario::new(setup.planner, setup.robots, seed)
+            };
+            let trace = run(&Terrain::gaussian(seed, setup.side), &scenario)?;
+            Ok(Run::new(&trace))
+        };
+        let runs = (0..terrains)
+            .into_par_iter()
+            .map(one)
+            .collect::<Result<_, _>>()?;
+        Ok(Self { setup, runs })
+    }
+
+    /// The mean over the terrains of what `value` gives; runs without it are left out.
+    fn mean(&self, value: impl Fn(&Run) -> Option<f64>) -> Option<Interval> {
+        interval(self.runs.iter().filter_map(value))
+    }
+
+    fn ticks(&self, share: usize) -> Option<Interval> {
+        self.mean(|run| run.ticks[share].map(f64::from))
+    }
+
+    /// The legend: the planner, and how many runs did not end.
+    fn name(&self) -> String {
+        let left = self
+            .runs
+            .iter()
+            .filter(|run| run.ticks[2].is_none())
+            .count();
+        match left {
+            0 => self.setup.planner.to_string(),
+            _ => format!("{} ({left} runs not complete)", self.setup.planner),
+        }
+    }
+
+    /// Points over the steps until the last run was complete; a run that has ended
+    /// stays as it was, or is left out.
+    fn curve(&self, values: impl Fn(&Run) -> &Vec<f64>, stays: bool) -> Vec<Point> {
+        let end = self.runs.iter().filter_map(|run| run.ticks[2]).max();
+        let at = |tick: usize| {
+            let value = |run: &Run| {
+                let values = values(run);
+                let last = values.last().filter(|_| stays);
+                values.get(tick).or(last).copied()
+            };
+            Some(point(tick as f64, self.mean(value)?))
+        };
+        (0..=end.unwrap_or(0) as usize).filter_map(at).collect()
+    }
+
+    fn series(&self, style: Style, points: Vec<Point>) -> Series {
+        Series {
+            name: self.name(),
+            color: colour(self.setup.planner),
+            style,
+            points,
+        }
+    }
+}
+
+fn interval(values: impl Iterator<Item = f64>) -> Option<Interval> {
+    let values: Vec<(String, f64)> = (0..)
+        .zip(values)
+        .map(|(i, v): (u32, f64)| (i.to_string(), v))
+        .collect();
+    mean(
+        values
+            .iter()
+            .map(|(terrain, value)| (terrain.as_str(), *value)),
+    )
+}
+
+fn point(x: f64, Interval { mean, low, high }: Interval) -> Point {
+    Point {
+        x,
+        y: mean,
+        low,
+        high,
+    }
+}
+
+/// A planner has the same colour in all figures.
+fn colour(planner: Planner) -> usize {
+    METHODS
+        .iter()
+        .position(|&method| method == planner)
+        .unwrap_or(0)
+}

@@ -1,0 +1,80 @@
+//! The work of a decision by size of the map and of the fleet.
+
+use std::fmt::Write as _;
+
+use planner_core::survey::SetupError;
+
+use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
+use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
+
+pub(super) fn work(terrains: u64) -> Result<Figure, SetupError> {
+    let sides = [60u16, 100, 150, 200];
+    let fleets = [1usize, 2, 4, 8, 16];
+    let mut csv = String::from("planner,side,robots,mean_work,max_work\n");
+    let mut curves: [Vec<Series>; 2] = Default::default();
+    for planner in METHODS {
+        let mut measure = |setups: Vec<Setup>| -> Result<Series, SetupError> {
+            let mut points = Vec::new();
+            for (place, setup) in setups.into_iter().enumerate() {
+                let fleet = Fleet::new(setup, terrains)?;
+                let mean = fleet.mean(|run| Some(run.mean_work()));
+                let max = fleet.runs.iter().map(|run| run.max_work).max().unwrap_or(0);
+                points.extend(mean.map(|interval| point(place as f64, interval)));
+                let _ = writeln!(
+                    csv,
+                    "{planner},{},{},{:.0},{max}",
+                    setup.side,
+                    setup.robots,
+                    mean.map_or(f64::NAN, |interval| interval.mean),
+                );
+            }
+            Ok(Series {
+                name: planner.to_string(),
+                color: colour(planner),
+                style: Style::Dots,
+                points,
+            })
+        };
+        let by_side = sides.map(|side| Setup {
+            side,
+            ..Setup::new(planner, ROBOTS)
+        });
+        curves[0].push(measure(by_side.to_vec())?);
+        let by_robots = fleets.map(|robots| Setup::new(planner, robots));
+        curves[1].push(measure(by_robots.to_vec())?);
+    }
+    let [by_side, by_robots] = curves;
+    let panel = |title: &str, label: &str, places: Vec<String>, series| Panel {
+        title: title.into(),
+        x: Axis::Places(label.into(), places),
+        y: "mean work of a decision".into(),
+        series,
+    };
+    Ok(Figure {
+        id: "fcao-work",
+        title: "The work of a decision by size of the map and of the fleet".into(),
+        caption: format!(
+            "Counted work as in fcao3, means over {terrains} terrains with 95 % confidence. It \
+             stays level for the planners of the core; that of the frontier methods grows with \
+             the frontier, and the centre's also with the fleet."
+        ),
+        chart: Chart {
+            title: "Work of a decision".into(),
+            panels: vec![
+                panel(
+                    &format!("{ROBOTS} robots"),
+                    "columns along a side",
+                    sides.map(|side| side.to_string()).to_vec(),
+                    by_side,
+                ),
+                panel(
+                    &format!("{SIDE}×{SIDE} columns"),
+                    "robots",
+                    fleets.map(|robots| robots.to_string()).to_vec(),
+                    by_robots,
+                ),
+            ],
+        },
+        csv,
+    })
+}

@@ -113,11 +113,13 @@ impl Default for Config {
 }
 
 /// What the near decision has come to.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Near {
-    /// A frontier that this robot is nearest to.
-    Mine(Candidate),
-    /// One that others are nearer to, for a robot that has no plan.
-    Theirs(Candidate),
+    /// This robot goes to a frontier that it is nearest to.
+    Mine,
+    /// It had no plan, and goes to one that others are nearer to.
+    Theirs,
+    /// It goes on with what it had.
     Nothing,
 }
 
@@ -279,7 +281,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 .near
                 .best(&self.around, &aim, bonus, others, &mut self.work);
             if let Some(candidate) = mine {
-                return Near::Mine(candidate);
+                self.far.cancel();
+                self.adopt_plan(candidate);
+                return Near::Mine;
             }
         }
         let plan = self.role.plan.as_ref();
@@ -293,16 +297,19 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 _ => self.start_sweep(),
             }
         }
-        match &bonus {
-            Some(bonus) if self.role.plan.is_none() => {
-                let others = core::iter::empty();
-                let theirs = self
-                    .near
-                    .best(&self.around, &aim, bonus, others, &mut self.work);
-                theirs.map_or(Near::Nothing, Near::Theirs)
+        if let Some(bonus) = &bonus
+            && self.role.plan.is_none()
+        {
+            let others = core::iter::empty();
+            let theirs = self
+                .near
+                .best(&self.around, &aim, bonus, others, &mut self.work);
+            if let Some(candidate) = theirs {
+                self.adopt_plan(candidate);
+                return Near::Theirs;
             }
-            _ => Near::Nothing,
         }
+        Near::Nothing
     }
 
     /// The commitment rule: a longer plan than the one at hand costs a token.
@@ -394,14 +401,14 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         } else {
             Near::Nothing
         };
-        if let Near::Mine(candidate) = near {
-            self.far.cancel();
-            self.adopt_plan(candidate);
-        } else {
+        if near != Near::Mine {
             match self.search_far() {
                 Outcome::Searching => {}
                 Outcome::Found(candidate) => {
                     self.far_again = self.around.now.saturating_add(self.config.far_pause);
+                    if near == Near::Theirs {
+                        self.role.plan = None;
+                    }
                     self.adopt_plan(candidate);
                 }
                 Outcome::NothingLeft => {
@@ -416,11 +423,6 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                         self.role.plan = None;
                     }
                 }
-            }
-            if let Near::Theirs(candidate) = near
-                && self.role.plan.is_none()
-            {
-                self.adopt_plan(candidate);
             }
         }
         match self.next_step() {

@@ -329,7 +329,7 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
 }
 
 /// What was said in the last tick. A message that was heard ends in an arrow, one that
-/// was lost in a cross halfway, and one under way carries a square: nobody needs to
+/// was lost in a cross on the way, and one under way carries a square: nobody needs to
 /// tell colours apart.
 fn messages(frame: &Frame<'_>, state: &dyn Stepping, place: &Place, colors: &Colors) -> Vec<Shape> {
     let said = state.messages();
@@ -357,10 +357,11 @@ fn messages(frame: &Frame<'_>, state: &dyn Stepping, place: &Place, colors: &Col
             continue;
         }
         // On the right, as on a road: the answer comes on the other side.
-        let aside = vec2(-along.y, along.x) * 2.5;
+        let aside = vec2(-along.y, along.x) * 3.0;
         let gap = along * (place.robot() + 1.0);
         let (begin, end) = (begin + gap + aside, end - gap + aside);
-        let middle = begin + (end - begin) * 0.5;
+        // Marks of both directions stay apart.
+        let (lost, under_way) = (begin.lerp(end, 0.35), begin.lerp(end, 0.55));
         let quiet = Stroke::new(1.0, mix(colors.free, colors.ink, 0.55));
         let loud = Stroke::new(1.5, colors.lost);
         match message.fate {
@@ -368,19 +369,19 @@ fn messages(frame: &Frame<'_>, state: &dyn Stepping, place: &Place, colors: &Col
             Fate::Heard => {
                 shapes.push(Shape::line_segment([begin, end], quiet));
                 for side in [aside, -aside] {
-                    let feather = end - along * 6.0 + side * 1.2;
+                    let feather = end - along * 6.0 + side;
                     shapes.push(Shape::line_segment([feather, end], quiet));
                 }
             }
             Fate::UnderWay => {
                 shapes.extend(Shape::dotted_line(&[begin, end], quiet.color, 5.0, 1.0));
-                let square = Rect::from_center_size(middle, Vec2::splat(6.0));
+                let square = Rect::from_center_size(under_way, Vec2::splat(5.0));
                 shapes.push(Shape::rect_filled(square, 0.0, quiet.color));
             }
             Fate::Lost => {
-                shapes.extend(Shape::dashed_line(&[begin, middle], loud, 4.0, 4.0));
+                shapes.extend(Shape::dashed_line(&[begin, lost], loud, 4.0, 4.0));
                 for arm in [vec2(4.0, 4.0), vec2(4.0, -4.0)] {
-                    shapes.push(Shape::line_segment([middle - arm, middle + arm], loud));
+                    shapes.push(Shape::line_segment([lost - arm, lost + arm], loud));
                 }
             }
         }

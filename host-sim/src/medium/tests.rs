@@ -178,7 +178,7 @@ fn the_shares_of_the_air_are_kept() {
 /// was seen under way.
 fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
     let world = Arc::new(generate(Family::Rooms, 30, 30, 1).unwrap());
-    let starts = world.place(3, &Starts::Random(1), false).unwrap();
+    let starts = world.place(2, &Starts::Random(1), false).unwrap();
     let extent = world.extent();
     let build = Box::new(move |id, start| {
         let link = LinkConfig::new();
@@ -216,11 +216,15 @@ fn every_message_tells_what_became_of_it() {
         assert!(heard > 50 && [lost, unreached, under_way] == [0; 3]);
         let [heard, lost, ..] = fates(kind, AirFaults::default(), 1.0);
         assert!(heard == 0 && lost > 50);
-        let deaf = AirFaults {
-            reach: Reach::Cells(0),
+        let apart = AirFaults {
+            partitions: vec![Partition {
+                from: 0,
+                until: 50,
+                border: 1,
+            }],
             ..AirFaults::default()
         };
-        let [heard, lost, unreached, _] = fates(kind, deaf, 1.0);
+        let [heard, lost, unreached, _] = fates(kind, apart, 1.0);
         assert!(heard == 0 && lost == 0 && unreached > 50);
     }
     let late = AirFaults {

@@ -216,7 +216,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.medium.listen();
     }
 
-    /// The messages of the last tick, arrived or lost. Empty without
+    /// The messages of the last tick, heard, lost or under way. Empty without
     /// [`listen`](Self::listen).
     pub fn messages(&self) -> &[Message] {
         self.medium.messages()

@@ -10,7 +10,7 @@ use crate::ground::{ALL_TICKS, Layers};
 use crate::maps::{self, Map};
 use crate::platform::{Inbox, Stopwatch};
 use crate::setup::Setup;
-use crate::survey::SurveyScene;
+use crate::survey::{SurveyScene, SurveySetup};
 use crate::view::{Camera, Deed, Tool, View};
 use crate::watch::{Verdict, Watch};
 
@@ -123,6 +123,14 @@ impl App {
 
     /// The lab with the scenario of an address.
     pub fn from_address(address: &str) -> Self {
+        if SurveySetup::is_meant(address) {
+            let mut app = Self::new(Setup::default());
+            match SurveySetup::from_address(address) {
+                Ok(setup) => app.fly(setup),
+                Err(error) => app.fail(error),
+            }
+            return app;
+        }
         match Setup::from_address(address) {
             Ok(setup) => Self::new(setup),
             Err(error) => {
@@ -130,6 +138,26 @@ impl App {
                 app.fail(error);
                 app
             }
+        }
+    }
+
+    /// The part of an address behind `#` that shows what is looked at.
+    pub fn address(&self) -> String {
+        match &self.survey {
+            Some(survey) => survey.setup.address(),
+            None => self.setup.address(),
+        }
+    }
+
+    /// Starts a survey.
+    pub fn fly(&mut self, setup: SurveySetup) {
+        match SurveyScene::new(setup) {
+            Ok(scene) => {
+                self.survey = Some(scene);
+                self.playing = true;
+                self.notice = None;
+            }
+            Err(error) => self.fail(error),
         }
     }
 
@@ -256,8 +284,9 @@ impl App {
         }
         let clock = Stopwatch::start();
         let has_time = || clock.seconds() < FRAME_BUDGET;
+        let seconds = seconds.min(LONGEST_FRAME);
         if let Some(survey) = &mut self.survey {
-            survey.advance(self.playing, seconds, self.speed, has_time);
+            self.playing = self.playing && survey.advance(seconds, self.speed, has_time);
             return;
         }
         let mut waits = false;
@@ -272,7 +301,7 @@ impl App {
             waits |= run.target.is_some();
         }
         if self.playing && !waits {
-            self.due += self.speed * seconds.min(LONGEST_FRAME);
+            self.due += self.speed * seconds;
             while self.due >= 1.0 {
                 self.due -= 1.0;
                 if !self.tick() {
@@ -292,6 +321,9 @@ impl App {
 
     /// One tick of every run; false if there is none any more.
     pub fn tick(&mut self) -> bool {
+        if let Some(survey) = &mut self.survey {
+            return survey.step();
+        }
         let mut went_on = false;
         let shown = self.shown_tick();
         for run in &mut self.runs {
@@ -304,6 +336,9 @@ impl App {
 
     /// The latest tick that is shown of any run.
     pub fn shown_tick(&self) -> u32 {
+        if let Some(survey) = &self.survey {
+            return survey.shown() as u32;
+        }
         self.runs
             .iter()
             .map(|run| run.watch.shown())
@@ -313,6 +348,9 @@ impl App {
 
     /// The last tick that any run has done.
     pub fn last_tick(&self) -> u32 {
+        if let Some(survey) = &self.survey {
+            return survey.steps() as u32;
+        }
         self.runs
             .iter()
             .map(|run| run.watch.ticks())
@@ -322,6 +360,9 @@ impl App {
 
     /// Shows the state after so many ticks.
     pub fn show(&mut self, tick: u32) {
+        if let Some(survey) = &mut self.survey {
+            return survey.show_step(tick as usize);
+        }
         for run in &mut self.runs {
             run.watch.show(tick);
         }
@@ -330,10 +371,13 @@ impl App {
     /// Plays or pauses; at the end, plays from the start.
     pub fn play_or_pause(&mut self) {
         self.playing = !self.playing;
-        let is_over = self
-            .runs
-            .iter()
-            .all(|run| run.watch.verdict() != Verdict::Running);
+        let is_over = match &self.survey {
+            Some(survey) => survey.is_over(),
+            None => self
+                .runs
+                .iter()
+                .all(|run| run.watch.verdict() != Verdict::Running),
+        };
         if self.playing && is_over && self.shown_tick() == self.last_tick() {
             self.show(0);
         }
@@ -428,8 +472,23 @@ impl App {
 
     /// Reads what the page around the lab should know.
     pub fn report(&self) -> Report {
-        let first = self.runs.first();
         let error = self.notice.as_ref().filter(|notice| notice.is_error);
+        let error = error.map_or_else(String::new, |notice| notice.text.clone());
+        if let Some(survey) = &self.survey {
+            return Report {
+                state: match (survey.is_over(), survey.is_complete()) {
+                    (true, true) => "complete",
+                    (true, false) => "incomplete",
+                    (false, _) if self.playing => "running",
+                    (false, _) => "paused",
+                },
+                digest: survey.digest().unwrap_or_default().into(),
+                ticks: survey.steps() as u32,
+                map: survey.trace().terrain.name().into(),
+                error,
+            };
+        }
+        let first = self.runs.first();
         let verdicts: Vec<_> = self.runs.iter().map(|run| run.watch.verdict()).collect();
         let state = match () {
             () if verdicts.contains(&Verdict::Running) => match self.playing {
@@ -444,7 +503,7 @@ impl App {
             digest: first.and_then(|run| run.watch.digest()).unwrap_or_default(),
             ticks: first.map_or(0, |run| run.watch.ticks()),
             map: first.map_or_else(String::new, |run| run.watch.scenario().world.name().into()),
-            error: error.map_or_else(String::new, |notice| notice.text.clone()),
+            error,
         }
     }
 }

@@ -36,7 +36,7 @@ pub struct Layers {
     pub visited: bool,
     /// How far the selected robot's search over the whole map has got.
     pub search: bool,
-    /// Who heard whom in the last tick.
+    /// What was heard, lost or under way in the last tick.
     pub radio: bool,
 }
 

@@ -35,6 +35,8 @@ pub struct Setup {
     pub loss: f64,
     /// Who hears whom.
     pub reach: Reach,
+    /// Frames come so many ticks late at most.
+    pub delay: u32,
     /// Bytes that a robot may send in a tick on average.
     pub byte_budget: u16,
     /// Seed of all chance in the run.
@@ -59,6 +61,7 @@ impl Default for Setup {
             sync: 1,
             loss: 0.0,
             reach: Reach::Everywhere,
+            delay: 0,
             byte_budget: MAX_LEN as u16,
             seed: 1,
             solid: false,
@@ -88,6 +91,7 @@ impl Setup {
         scenario.sync = self.sync;
         scenario.loss = self.loss;
         scenario.air.reach = self.reach;
+        scenario.air.delay = self.delay;
         scenario.byte_budget = self.byte_budget;
         scenario.seed = self.seed;
         scenario.solid = self.solid;
@@ -109,6 +113,7 @@ impl Setup {
             sync: scenario.sync,
             loss: scenario.loss,
             reach: scenario.air.reach,
+            delay: scenario.air.delay,
             byte_budget: scenario.byte_budget,
             seed: scenario.seed,
             solid: scenario.solid,
@@ -161,6 +166,7 @@ impl Setup {
             Reach::Cells(cells) => cells.to_string(),
         };
         say(self.reach != usual.reach, "radio-range", reach);
+        say(self.delay != usual.delay, "delay", self.delay.to_string());
         let budget = self.byte_budget;
         say(
             budget != usual.byte_budget,
@@ -270,6 +276,7 @@ impl Setup {
                         _ => Reach::Cells(value.parse().map_err(|_| wrong())?),
                     }
                 }
+                "delay" => setup.delay = value.parse().map_err(|_| wrong())?,
                 "byte-budget" => setup.byte_budget = value.parse().map_err(|_| wrong())?,
                 "seed" => setup.seed = value.parse().map_err(|_| wrong())?,
                 "solid" => setup.solid = true,
@@ -354,6 +361,7 @@ mod tests {
             sync: 3,
             loss: 0.25,
             reach: Reach::Cells(9),
+            delay: 2,
             byte_budget: 30,
             seed: 5,
             solid: true,
@@ -409,7 +417,7 @@ mod tests {
         ));
         assert!(command.ends_with(
             "explore rooms-7.txt --planner minpos --robots 4 --start corner --range 6 \
-             --medium ideal --sync 3 --loss 0.25 --radio-range 9 --byte-budget 30 --seed 5 \
+             --medium ideal --sync 3 --loss 0.25 --radio-range 9 --delay 2 --byte-budget 30 --seed 5 \
              --solid --kill 1@40 --late 3@12"
         ));
     }

@@ -1,12 +1,26 @@
 //! 3-D surveys: terrain as blocks that are painted from back to front, drones above.
 
+use std::fmt::Write;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
 use std::sync::Arc;
 
+use clap::ValueEnum;
 use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, vec2};
-use host_sim::survey::{self, Planner, Scenario, Stepping, Terrain, TerrainSource};
+use host_sim::medium::MediumKind;
+use host_sim::survey::{self, Planner, Scenario, Stepping, Terrain, TerrainSource, Trace};
 use planner_core::{Cell, Point};
 
 use crate::colors::{Colors, mix};
+
+/// Columns along a side: what can be drawn in time.
+pub const SIZES: RangeInclusive<u16> = 16..=128;
+/// Numbers of drones.
+pub const ROBOTS: RangeInclusive<u8> = 1..=32;
+/// Least altitudes.
+pub const ALTITUDES: RangeInclusive<f32> = 1.0..=6.0;
+/// Greatest heights.
+pub const CEILINGS: RangeInclusive<f32> = 20.0..=60.0;
 
 /// What is flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +37,10 @@ pub struct SurveySetup {
     pub min_altitude: f32,
     /// Greatest height, in cells.
     pub ceiling: f32,
+    /// How drones tell each other what they know.
+    pub medium: MediumKind,
+    /// Share of messages lost.
+    pub loss: f64,
     /// Seed of the drones' choices.
     pub seed: u64,
 }
@@ -36,29 +54,128 @@ impl Default for SurveySetup {
             robots: 4,
             min_altitude: 2.0,
             ceiling: 40.0,
+            medium: MediumKind::Radio,
+            loss: 0.0,
             seed: 0,
         }
     }
 }
 
 impl SurveySetup {
-    /// The `host-sim` line that runs the same.
-    pub fn command(&self) -> String {
-        use clap::ValueEnum;
-        let terrain = match &self.terrain {
+    /// The scenario over the terrain.
+    pub fn scenario(&self) -> Scenario {
+        let mut scenario = Scenario::new(self.planner, self.robots.into(), self.seed);
+        scenario.limits.min_altitude = self.min_altitude;
+        scenario.limits.ceiling = self.ceiling;
+        scenario.medium = self.medium;
+        scenario.loss = self.loss;
+        scenario
+    }
+
+    /// Every setting but the terrain, as names and values.
+    fn settings(&self) -> [(&'static str, String); 8] {
+        [
+            ("size", self.size.to_string()),
+            ("planner", self.planner.to_string()),
+            ("robots", self.robots.to_string()),
+            ("min-altitude", self.min_altitude.to_string()),
+            ("ceiling", self.ceiling.to_string()),
+            ("medium", self.medium.to_string()),
+            ("loss", self.loss.to_string()),
+            ("seed", self.seed.to_string()),
+        ]
+    }
+
+    fn terrain_name(&self) -> String {
+        match &self.terrain {
             TerrainSource::Gaussian(seed) => format!("gaussian:{seed}"),
             TerrainSource::Urban(seed) => format!("urban:{seed}"),
             TerrainSource::Town(seed) => format!("town:{seed}"),
             TerrainSource::File(path) => path.display().to_string(),
-        };
-        let planner = self.planner.to_possible_value();
-        let planner = planner.as_ref().map_or("", |value| value.get_name());
-        format!(
-            "cargo run --release -- survey --terrain {terrain} --medium ideal --size {} --planner {planner} \
-             --robots {} --min-altitude {} --ceiling {} --seed {}",
-            self.size, self.robots, self.min_altitude, self.ceiling, self.seed
-        )
+        }
     }
+
+    /// The part of an address behind `#`: the terrain, and what differs from the
+    /// defaults.
+    pub fn address(&self) -> String {
+        let mut address = format!("terrain={}", self.terrain_name());
+        for ((name, value), (_, usual)) in self.settings().iter().zip(Self::default().settings()) {
+            if *value != usual {
+                let _ = write!(address, "&{name}={value}");
+            }
+        }
+        address
+    }
+
+    /// Whether an address is that of a survey.
+    pub fn is_meant(address: &str) -> bool {
+        parts(address).any(|(name, _)| name == "terrain")
+    }
+
+    /// Reads [`address`](Self::address).
+    ///
+    /// # Errors
+    /// What is wrong with it, in a sentence for the user.
+    pub fn from_address(address: &str) -> Result<Self, String> {
+        let mut setup = Self::default();
+        for (name, value) in parts(address) {
+            let done = match name {
+                "terrain" => match value.parse() {
+                    Ok(TerrainSource::File(_) | TerrainSource::Town(_)) | Err(_) => None,
+                    Ok(terrain) => {
+                        setup.terrain = terrain;
+                        Some(())
+                    }
+                },
+                "size" => within(value, SIZES, &mut setup.size),
+                "planner" => Planner::from_str(value, true)
+                    .ok()
+                    .map(|planner| setup.planner = planner),
+                "robots" => within(value, ROBOTS, &mut setup.robots),
+                "min-altitude" => within(value, ALTITUDES, &mut setup.min_altitude),
+                "ceiling" => within(value, CEILINGS, &mut setup.ceiling),
+                "medium" => MediumKind::from_str(value, true)
+                    .ok()
+                    .map(|medium| setup.medium = medium),
+                "loss" => within(value, 0.0..=1.0, &mut setup.loss),
+                "seed" => within(value, 0..=u64::MAX, &mut setup.seed),
+                _ => None,
+            };
+            done.ok_or_else(|| format!("the address: `{name}={value}` is not understood"))?;
+        }
+        Ok(setup)
+    }
+
+    /// The `host-sim` line that runs the same: same trace, same digest.
+    pub fn command(&self) -> String {
+        let mut command = format!(
+            "cargo run --release -- survey --terrain {}",
+            self.terrain_name()
+        );
+        for (name, value) in self.settings() {
+            let _ = write!(command, " --{name} {value}");
+        }
+        command
+    }
+}
+
+/// Names and values of an address.
+fn parts(address: &str) -> impl Iterator<Item = (&str, &str)> {
+    let parts = address.trim_start_matches('#').split('&');
+    parts
+        .filter(|part| !part.is_empty())
+        .map(|part| part.split_once('=').unwrap_or((part, "")))
+}
+
+/// Sets a number, if it is one and within its limits.
+fn within<T: FromStr + PartialOrd>(
+    value: &str,
+    limits: RangeInclusive<T>,
+    to: &mut T,
+) -> Option<()> {
+    let value = value.parse().ok().filter(|value| limits.contains(value))?;
+    *to = value;
+    Some(())
 }
 
 /// A survey on the screen.
@@ -71,10 +188,13 @@ pub struct SurveyScene {
     pub shows_ceiling: bool,
     terrain: Arc<Terrain>,
     run: Box<dyn Stepping>,
-    /// Heights that have been seen, row by row.
-    seen: Vec<Option<f32>>,
+    /// Columns that have been seen, row by row: since which step, and how high.
+    seen: Vec<Option<(usize, f32)>>,
     taken: usize,
     is_over: bool,
+    digest: Option<String>,
+    /// Whose state is drawn: that after so many steps.
+    shown: usize,
     due: f32,
     turn: f32,
     tilt: f32,
@@ -88,11 +208,9 @@ impl SurveyScene {
     /// What cannot be flown, in a sentence for the user.
     pub fn new(setup: SurveySetup) -> Result<Self, String> {
         let terrain = Arc::new(setup.terrain.load(setup.size)?);
-        let mut scenario = Scenario::new(setup.planner, setup.robots.into(), setup.seed);
-        scenario.limits.min_altitude = setup.min_altitude;
-        scenario.limits.ceiling = setup.ceiling;
-        let run = survey::open(terrain.clone(), &scenario).map_err(|error| error.to_string())?;
-        Ok(Self {
+        let run =
+            survey::open(terrain.clone(), &setup.scenario()).map_err(|error| error.to_string())?;
+        let mut scene = Self {
             seen: vec![None; terrain.extent().cells() as usize],
             setup,
             shows_hidden: true,
@@ -101,38 +219,56 @@ impl SurveyScene {
             run,
             taken: 0,
             is_over: false,
+            digest: None,
+            shown: 0,
             due: 0.0,
             turn: 0.7,
             tilt: 0.75,
             zoom: 1.0,
-        })
+        };
+        // The look before the first flight.
+        scene.run_on();
+        Ok(scene)
     }
 
-    /// Lets time go by.
-    pub fn advance(&mut self, plays: bool, seconds: f32, speed: f32, has_time: impl Fn() -> bool) {
-        if !plays || self.is_over {
-            return;
-        }
-        self.due += speed * seconds.min(0.25);
-        while self.due >= 1.0 && !self.is_over {
+    /// Lets time go by; false if there is nothing more to show.
+    pub fn advance(&mut self, seconds: f32, speed: f32, has_time: impl Fn() -> bool) -> bool {
+        self.due += speed * seconds;
+        while self.due >= 1.0 {
             self.due -= 1.0;
-            self.step();
+            if !self.step() {
+                self.due = 0.0;
+                return false;
+            }
             if !has_time() {
                 self.due = 0.0;
             }
         }
+        true
     }
 
-    /// One step of the fleet.
-    pub fn step(&mut self) {
+    /// Shows the next step, and flies it if it was not flown yet; false if there is none.
+    pub fn step(&mut self) -> bool {
+        if self.shown == self.steps() && !self.is_over {
+            self.run_on();
+        }
+        let goes_on = self.shown < self.steps();
+        self.shown += usize::from(goes_on);
+        goes_on
+    }
+
+    fn run_on(&mut self) {
         self.is_over = !self.run.step();
         let width = usize::from(self.terrain.extent().width);
         let found = &self.run.trace().found;
-        for (_, column) in &found[self.taken..] {
+        for (step, column) in &found[self.taken..] {
             let index = column.cell.y as usize * width + column.cell.x as usize;
-            self.seen[index] = Some(column.height.cells());
+            self.seen[index].get_or_insert((*step as usize, column.height.cells()));
         }
         self.taken = found.len();
+        if self.is_over {
+            self.digest = Some(self.run.trace().digest());
+        }
     }
 
     /// Whether every drone has stopped, or time is up.
@@ -140,9 +276,25 @@ impl SurveyScene {
         self.is_over
     }
 
+    /// Whether every column was seen and every drone has stopped.
+    pub fn is_complete(&self) -> bool {
+        let trace = self.run.trace();
+        self.is_over && trace.all_stopped && trace.complete()
+    }
+
     /// Steps done.
     pub fn steps(&self) -> usize {
-        self.run.trace().seen.len().saturating_sub(1)
+        self.run.trace().seen.len() - 1
+    }
+
+    /// The step that is shown: so many are done.
+    pub fn shown(&self) -> usize {
+        self.shown
+    }
+
+    /// Shows the state after so many steps.
+    pub fn show_step(&mut self, step: usize) {
+        self.shown = step.min(self.steps());
     }
 
     /// Share of the columns that have been seen after each step, in per cent.
@@ -161,9 +313,14 @@ impl SurveyScene {
         safety.altitude_violations + safety.obstacle_violations + safety.separation_violations
     }
 
-    /// The digest of the run so far, as `host-sim survey` prints it.
-    pub fn digest(&self) -> String {
-        self.run.trace().digest()
+    /// The digest of the trace, when the survey is over.
+    pub fn digest(&self) -> Option<&str> {
+        self.digest.as_deref()
+    }
+
+    /// The run so far.
+    pub fn trace(&self) -> &Trace {
+        self.run.trace()
     }
 
     /// Draws the scene over the room that is left; dragging turns it, the wheel zooms.
@@ -207,8 +364,8 @@ impl SurveyScene {
         for &y in &down {
             for &x in &across {
                 let seen = self.seen[y as usize * width + x as usize];
-                let (height, base) = match seen {
-                    Some(height) => (height, shade(height / highest, colors)),
+                let (height, base) = match seen.filter(|(since, _)| *since <= self.shown) {
+                    Some((_, height)) => (height, shade(height / highest, colors)),
                     None if self.shows_hidden => {
                         let height = self.terrain.height(Cell::new(x, y));
                         (height.map_or(0.0, |height| height.cells()), colors.unknown)
@@ -261,7 +418,9 @@ impl SurveyScene {
         for (way, &start) in ways.iter_mut().zip(&trace.starts) {
             way.push(eye.over(start));
         }
-        for record in &trace.records {
+        let flown = |record: &survey::Record| (record.tick as usize) < self.shown;
+        let done = trace.records.partition_point(flown);
+        for record in &trace.records[..done] {
             let robot = usize::from(record.robot);
             ways[robot].push(eye.over(record.at));
             last[robot] = record.at;
@@ -364,20 +523,93 @@ impl Eye {
 mod tests {
     use super::*;
 
+    fn unusual() -> SurveySetup {
+        SurveySetup {
+            terrain: TerrainSource::Urban(3),
+            size: 24,
+            planner: Planner::Fcao,
+            robots: 2,
+            min_altitude: 1.5,
+            ceiling: 50.0,
+            medium: MediumKind::Ideal,
+            loss: 0.25,
+            seed: 7,
+        }
+    }
+
+    fn flown(setup: SurveySetup) -> SurveyScene {
+        let mut scene = SurveyScene::new(setup).unwrap();
+        while scene.step() {}
+        scene
+    }
+
     #[test]
     fn a_survey_on_screen_is_the_survey_of_host_sim() {
-        let setup = SurveySetup {
+        let hills = SurveySetup {
             size: 24,
             ..SurveySetup::default()
         };
-        let mut scene = SurveyScene::new(setup.clone()).unwrap();
-        while !scene.is_over() {
-            scene.step();
+        for setup in [hills, unusual()] {
+            let scene = flown(setup.clone());
+            let terrain = setup.terrain.load(setup.size).unwrap();
+            let trace = survey::run(&terrain, &setup.scenario()).unwrap();
+            assert_eq!(scene.digest(), Some(&*trace.digest()));
+            assert_eq!(scene.curve().last(), Some(100.0));
+            assert!(scene.is_complete());
         }
-        let terrain = setup.terrain.load(setup.size).unwrap();
-        let scenario = Scenario::new(setup.planner, setup.robots.into(), setup.seed);
-        let trace = survey::run(&terrain, &scenario).unwrap();
-        assert_eq!(scene.digest(), trace.digest());
-        assert_eq!(scene.curve().last(), Some(100.0));
+    }
+
+    #[test]
+    fn every_step_can_be_gone_back_to() {
+        let mut scene = flown(unusual());
+        let mut ahead = SurveyScene::new(unusual()).unwrap();
+        for step in 0..scene.steps() {
+            scene.show_step(step);
+            assert_eq!(ahead.shown(), step);
+            let visible = |scene: &SurveyScene| {
+                let seen = scene.seen.iter().flatten();
+                seen.filter(|(since, _)| *since <= scene.shown).count()
+            };
+            assert_eq!(visible(&scene), visible(&ahead));
+            let curve = ahead.trace().seen[step];
+            assert_eq!(visible(&ahead), curve as usize);
+            assert!(ahead.step());
+        }
+        assert!(!ahead.step());
+    }
+
+    #[test]
+    fn an_address_carries_everything() {
+        for setup in [SurveySetup::default(), unusual()] {
+            let address = setup.address();
+            assert!(SurveySetup::is_meant(&address));
+            assert_eq!(SurveySetup::from_address(&address), Ok(setup));
+        }
+        assert_eq!(SurveySetup::default().address(), "terrain=gaussian:0");
+        assert!(!SurveySetup::is_meant("map=office"));
+    }
+
+    #[test]
+    fn a_bad_address_says_which_part() {
+        for part in [
+            "terrain=moon:1",
+            "terrain=/etc/passwd",
+            "robots=0",
+            "size=100000",
+            "ceiling=NaN",
+            "colour=red",
+        ] {
+            let error = SurveySetup::from_address(&format!("terrain=urban:1&{part}")).unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+
+    #[test]
+    fn the_command_names_every_setting() {
+        assert_eq!(
+            unusual().command(),
+            "cargo run --release -- survey --terrain urban:3 --size 24 --planner fcao --robots 2 \
+             --min-altitude 1.5 --ceiling 50 --medium ideal --loss 0.25 --seed 7"
+        );
     }
 }

@@ -5,7 +5,9 @@ use egui::{
     Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, pos2, vec2,
 };
-use planner_core::{Cell, Extent};
+use host_sim::medium::{Fate, Message};
+use host_sim::run::Stepping;
+use planner_core::{Cell, Extent, RobotId};
 
 use crate::colors::{Colors, mix};
 use crate::ground::{self, Layers, Subject};
@@ -269,7 +271,7 @@ fn robot_at(watch: &Watch, place: &Place, at: Pos2) -> Option<usize> {
     (distance <= place.robot() + 6.0).then_some(robot)
 }
 
-/// Ways, goals, plans and messages.
+/// Ways, goals, plans and messages, over the ground.
 fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
     let watch = frame.watch;
     let robots = watch.scenario().starts.len();
@@ -321,24 +323,65 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
         }
     }
     if let (true, Some(state)) = (frame.layers.radio, watch.state()) {
-        let messages = state.messages();
-        let concerns = |from: u8, to: u8| match frame.selected {
-            Some(robot) => usize::from(from) == robot || usize::from(to) == robot,
-            None => messages.len() <= MOST_MESSAGES,
-        };
-        for message in messages.iter().filter(|it| concerns(it.from.0, it.to.0)) {
-            let end = |robot: u8| {
-                positions
-                    .get(usize::from(robot))
-                    .map(|&at| place.middle(at))
-            };
-            if let (Some(from), Some(to)) = (end(message.from.0), end(message.to.0)) {
-                if message.arrived {
-                    let stroke = Stroke::new(1.0, mix(colors.free, colors.ink, 0.5));
-                    shapes.push(Shape::line_segment([from, to], stroke));
-                } else {
-                    let stroke = Stroke::new(1.5, colors.lost);
-                    shapes.extend(Shape::dashed_line(&[from, to], stroke, 3.0, 6.0));
+        shapes.extend(messages(frame, state, place, colors));
+    }
+    shapes
+}
+
+/// What was said in the last tick. A message that was heard ends in an arrow, one that
+/// was lost in a cross on the way, and one under way carries a square: nobody needs to
+/// tell colours apart.
+fn messages(frame: &Frame<'_>, state: &dyn Stepping, place: &Place, colors: &Colors) -> Vec<Shape> {
+    let said = state.messages();
+    let robots = frame.watch.scenario().starts.len();
+    let concerns = |message: &Message| match frame.selected {
+        Some(robot) => [message.from, message.to].contains(&RobotId(robot as u8)),
+        None => said.len() <= MOST_MESSAGES,
+    };
+    let mut drawn = vec![false; robots * robots * 4];
+    let mut shapes = Vec::new();
+    for message in said.iter().filter(|message| concerns(message)) {
+        let [from, to] = [message.from, message.to].map(|id| usize::from(id.0));
+        // Several frames make one line.
+        let index = (from * robots + to) * 4 + message.fate as usize;
+        if std::mem::replace(&mut drawn[index], true) {
+            continue;
+        }
+        let [from, to] = [from, to].map(|robot| state.robot(robot));
+        if !from.alive || !to.alive || message.fate == Fate::OutOfReach {
+            continue;
+        }
+        let [begin, end] = [from, to].map(|robot| place.middle(robot.position));
+        let along = (end - begin).normalized();
+        if along == Vec2::ZERO {
+            continue;
+        }
+        // On the right, as on a road: the answer comes on the other side.
+        let aside = vec2(-along.y, along.x) * 3.0;
+        let gap = along * (place.robot() + 1.0);
+        let (begin, end) = (begin + gap + aside, end - gap + aside);
+        // Marks of both directions stay apart.
+        let (lost, under_way) = (begin.lerp(end, 0.35), begin.lerp(end, 0.55));
+        let quiet = Stroke::new(1.0, mix(colors.free, colors.ink, 0.55));
+        let loud = Stroke::new(1.5, colors.lost);
+        match message.fate {
+            Fate::OutOfReach => {}
+            Fate::Heard => {
+                shapes.push(Shape::line_segment([begin, end], quiet));
+                for side in [aside, -aside] {
+                    let feather = end - along * 6.0 + side;
+                    shapes.push(Shape::line_segment([feather, end], quiet));
+                }
+            }
+            Fate::UnderWay => {
+                shapes.extend(Shape::dotted_line(&[begin, end], quiet.color, 5.0, 1.0));
+                let square = Rect::from_center_size(under_way, Vec2::splat(5.0));
+                shapes.push(Shape::rect_filled(square, 0.0, quiet.color));
+            }
+            Fate::Lost => {
+                shapes.extend(Shape::dashed_line(&[begin, lost], loud, 4.0, 4.0));
+                for arm in [vec2(4.0, 4.0), vec2(4.0, -4.0)] {
+                    shapes.push(Shape::line_segment([lost - arm, lost + arm], loud));
                 }
             }
         }

@@ -106,7 +106,7 @@ impl Page {
             }
             self.told = Some(report);
         }
-        let address = self.app.setup.address();
+        let address = self.app.address();
         if address != self.address {
             let first = self.address.is_empty();
             self.address = address;

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{Command, cargo, command};
-use crate::{c_interface, documents, firmware, fuzz, install, lab, worst};
+use crate::{c_interface, documents, firmware, fuzz, host, install, lab, worst};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -96,10 +96,8 @@ const CHECKS: &[Check] = &[
         name: "test",
         title: "unit, property, cross-crate and documentation tests",
         run: || {
-            install::octomap()?;
-            // The lab has a check of its own.
-            repeatable(cargo(["test", "--workspace", "--locked", "--no-fail-fast"]))
-                .arg("--exclude=lab")
+            // OctoMap's have a check of their own.
+            repeatable(host::test().args(["--no-fail-fast", "--", "--skip=octomap"]))
                 .run()
                 .map(nothing)
         },
@@ -109,14 +107,14 @@ const CHECKS: &[Check] = &[
         title: "OctoMap's own tools read the maps of surveys",
         run: || {
             install::octomap()?;
-            repeatable(cargo(["test", "-p=host-sim", "--test=survey", "octomap"]))
+            repeatable(host::test().args(["--test=survey", "octomap"]))
                 .run()
                 .map(nothing)
         },
     },
     Check {
         name: "lab",
-        title: "the lab's window: state, replay, pictures of the screen",
+        title: "the lab's window: buttons, keys, pictures of the screen",
         run: || lab::window_works().map(nothing),
     },
     Check {
@@ -214,10 +212,6 @@ const CHECKS: &[Check] = &[
     },
 ];
 
-/// Checks that were not seen to pass on a machine like this and run only by name:
-/// `cargo xtask test --only lab-web`.
-const ON_DEMAND: [&str; 1] = ["lab-web"];
-
 /// The check of that name.
 pub(crate) fn named(name: &str) -> Result<&'static Check, String> {
     CHECKS
@@ -236,13 +230,7 @@ pub(crate) fn list() {
 /// Runs the given checks, or all of them, and sums up.
 pub(crate) fn run(only: &[&'static Check]) -> Result<()> {
     let chosen: Vec<&Check> = match only {
-        [] => {
-            for name in ON_DEMAND {
-                println!("not part of this run: cargo xtask test --only {name}");
-            }
-            let is_regular = |check: &&Check| !ON_DEMAND.contains(&check.name);
-            CHECKS.iter().filter(is_regular).collect()
-        }
+        [] => CHECKS.iter().collect(),
         only => only.to_vec(),
     };
     let begin = Instant::now();

@@ -2,10 +2,13 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Parser;
+use serde_json::Value;
 
+use crate::host;
 use crate::shell::{self, cargo};
 
 /// Checks every `cargo` line in the code blocks of the documents: options of
@@ -114,10 +117,7 @@ fn simulator_takes(words: &[&str]) -> Result<()> {
     let (cargo_words, ours) = words.split_at(split);
     let mut ours = ours.iter().skip(1).copied().peekable();
     let subcommand = ours.next_if(|word| !word.starts_with('-'));
-    let help = shell::command("cargo")
-        .args(cargo_words)
-        .arg("--quiet")
-        .arg("--")
+    let help = shell::command(program(cargo_words)?)
         .args(subcommand)
         .arg("--help")
         .output()?;
@@ -136,6 +136,56 @@ fn simulator_takes(words: &[&str]) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The program that `cargo run …` runs. An optimised one would say the same; this one
+/// is built for the tests anyway.
+fn program(cargo_words: &[&str]) -> Result<PathBuf> {
+    let mut words = cargo_words.iter().skip(1);
+    let mut program = None;
+    let mut package = None;
+    while let Some(&word) = words.next() {
+        match word {
+            "--release" => {}
+            "-p" => package = words.next().copied(),
+            "--example" => program = words.next().map(|name| format!("examples/{name}")),
+            _ => bail!("whether Cargo takes {word} is not known here"),
+        }
+    }
+    let (default_members, host_sim) = runnable()?;
+    match package {
+        None if default_members == ["host-sim"] => {}
+        None => bail!("`cargo run` could run any of {default_members:?}"),
+        Some("host-sim") if host_sim == ["host-sim"] => {}
+        Some(package) => bail!("what `cargo run -p {package}` runs is not known here"),
+    }
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    if FOLDER.get().is_none() {
+        let _ = FOLDER.set(host::build_simulator()?);
+    }
+    let folder = FOLDER.get().context("it was just set")?;
+    Ok(folder.join(program.as_deref().unwrap_or("host-sim")))
+}
+
+/// The programs of the default members of the workspace, and those of host-sim.
+fn runnable() -> Result<(Vec<String>, Vec<String>)> {
+    let metadata = cargo(["metadata", "--no-deps", "--format-version=1"]).output()?;
+    let metadata: Value = serde_json::from_slice(&metadata.bytes)?;
+    let list = |of: &Value| of.as_array().cloned().unwrap_or_default();
+    let defaults = list(&metadata["workspace_default_members"]);
+    let programs = |is_meant: &dyn Fn(&Value) -> bool| -> Vec<String> {
+        list(&metadata["packages"])
+            .iter()
+            .filter(|package| is_meant(package))
+            .flat_map(|package| list(&package["targets"]))
+            .filter(|target| list(&target["kind"]).contains(&"bin".into()))
+            .filter_map(|target| Some(target["name"].as_str()?.to_owned()))
+            .collect()
+    };
+    Ok((
+        programs(&|package| defaults.contains(&package["id"])),
+        programs(&|package| package["name"] == "host-sim"),
+    ))
 }
 
 #[cfg(test)]

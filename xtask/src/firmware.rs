@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
 use crate::shell::{self, Command, Output, cargo, command};
-use crate::{budget, install, logs};
+use crate::{budget, host, install, logs};
 
 /// The chip's target: Cortex-M4 with its floating-point unit.
 pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
@@ -94,16 +94,7 @@ pub(crate) fn decides_as_the_host() -> Result<String> {
         .args(["--example=stack-overflow", "--example=hangs"])
         .run()?;
     install::qemu()?;
-    let output = show(
-        cargo([
-            "test",
-            "--package=host-sim",
-            "--test=chips",
-            "--locked",
-            "--",
-        ])
-        .args(["--ignored", "--nocapture"]),
-    )?;
+    let output = show(host::test().args(["--test=chips", "--", "--ignored", "--nocapture"]))?;
     print!("{}", output.stdout);
     if !output.success() {
         eprint!("{}", output.stderr);

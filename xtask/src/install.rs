@@ -3,11 +3,9 @@
 //! Each function returns at once when the thing is there. Where it may not be
 //! installed from here, the error is the command to run.
 
-use std::path::PathBuf;
-
 use anyhow::{Context, Result, bail};
 
-use crate::shell::{Command, command, root};
+use crate::shell::{Command, command};
 
 /// The toolchain that Miri and the sanitizers come with.
 pub(crate) const NIGHTLY: &str = "nightly";
@@ -104,19 +102,6 @@ pub(crate) fn octomap() -> Result<()> {
 pub(crate) fn chromium() -> Result<()> {
     package("chromium", "chromium")?;
     package("chromedriver", "chromium-driver")
-}
-
-/// The program that fits WebAssembly for the browser, of the version that the library
-/// wants; returns its path. Compiling it takes a minute or two.
-pub(crate) fn wasm_bindgen(version: &str) -> Result<PathBuf> {
-    let tools = root().join("target/tools");
-    let program = tools.join("bin/wasm-bindgen");
-    let is_there = command(&program).arg("--version").output();
-    if !is_there.is_ok_and(|output| output.stdout.trim().ends_with(version)) {
-        let install = command("cargo").args(["install", "wasm-bindgen-cli"]);
-        or_say(install.args(["--version", version, "--root"]).arg(&tools))?;
-    }
-    Ok(program)
 }
 
 /// A program, from the system's package manager.

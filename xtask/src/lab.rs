@@ -1,13 +1,14 @@
 //! The lab as a web page.
 
 use std::fs;
-use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 use miniz_oxide::deflate::compress_to_vec;
+use wasm_bindgen_cli_support::Bindgen;
 
-use crate::install;
-use crate::shell::{cargo, command, root};
+use crate::firmware::{self, Machine};
+use crate::shell::{cargo, root};
+use crate::{host, install};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -15,7 +16,6 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// size.
 pub(crate) fn build_page() -> Result<String> {
     install::target(TARGET)?;
-    let wasm_bindgen = install::wasm_bindgen(&locked_version("wasm-bindgen")?)?;
     cargo([
         "build",
         "-p=lab",
@@ -25,14 +25,20 @@ pub(crate) fn build_page() -> Result<String> {
     ])
     .args(["--profile=web", "--target", TARGET])
     .run()?;
-    let built = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     let dist = root().join("dist");
-    command(wasm_bindgen)
-        .args(["--target=web", "--no-typescript", "--remove-name-section"])
-        .args(["--out-name=lab", "--out-dir"])
-        .arg(&dist)
-        .arg(built.join(TARGET).join("web/lab.wasm"))
-        .run()?;
+    Bindgen::new()
+        .input_path(host::built().join(TARGET).join("web/lab.wasm"))
+        .web(true)
+        .and_then(|bindgen| {
+            bindgen
+                .typescript(false)
+                // The page does not say where the program is: beside the script.
+                .omit_default_module_path(false)
+                .remove_name_section(true)
+                .out_name("lab")
+                .generate(&dist)
+        })
+        .context("the program cannot be fitted for the browser")?;
     fs::copy(root().join("lab/index.html"), dist.join("index.html"))?;
     let program = fs::read(dist.join("lab_bg.wasm"))?;
     let compressed = compress_to_vec(&program, 9).len();
@@ -43,43 +49,23 @@ pub(crate) fn build_page() -> Result<String> {
     ))
 }
 
-/// The window's parts: state, replay, and what is on the screen.
+/// The window; what is behind it is tested with all other crates.
 pub(crate) fn window_works() -> Result<()> {
-    // The optimised libraries of the other builds would take longer than the tests.
-    cargo([
-        "test",
-        "-p=lab",
-        "--no-default-features",
-        "--locked",
-        "--profile=dev",
-    ])
-    .run()
+    host::test().arg("--test=window").run()
 }
 
-/// The page in a real browser.
+/// The page in a real browser, beside the command and emulated chips.
 pub(crate) fn page_works() -> Result<String> {
     install::chromium()?;
+    install::qemu()?;
     let size = build_page()?;
-    cargo([
-        "test",
-        "-p=lab",
-        "--no-default-features",
-        "--locked",
-        "--profile=dev",
-    ])
-    .args(["--test=page", "--", "--ignored", "--test-threads=1"])
-    .run()?;
+    firmware::build_images(Machine::Netduinoplus2)?;
+    let simulator = host::build_simulator()?.join("host-sim");
+    host::test()
+        .args(["--test=page", "--", "--ignored", "--test-threads=1"])
+        // Measurements and pictures prove nothing.
+        .args(["--skip=crowd", "--skip=pictures"])
+        .env("HOST_SIM", simulator.display().to_string())
+        .run()?;
     Ok(size)
-}
-
-/// The version of a package in Cargo.lock.
-fn locked_version(package: &str) -> Result<String> {
-    let lock = fs::read_to_string(root().join("Cargo.lock"))?;
-    let entry = format!("name = \"{package}\"\nversion = \"");
-    let version = lock
-        .split_once(&entry)
-        .and_then(|(_, rest)| rest.split('"').next());
-    version
-        .map(str::to_owned)
-        .with_context(|| format!("Cargo.lock does not name {package}"))
 }

@@ -7,6 +7,7 @@ mod checks;
 mod documents;
 mod firmware;
 mod fuzz;
+mod host;
 mod install;
 mod lab;
 mod logs;

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use super::Message;
+use super::{Fate, Message};
 use crate::world::World;
 
 /// What goes wrong in the air besides plain loss. None of it by default.
@@ -85,17 +85,21 @@ impl Air {
             (partition.from..partition.until).contains(&tick)
                 && (from.0.0 < partition.border) != (to.0.0 < partition.border)
         };
-        let arrived = !self.faults.partitions.iter().any(is_cut)
-            && self.reaches(from.1, to.1)
-            && !self.strikes(self.loss);
-        if let Some(messages) = &mut self.messages {
-            messages.push(Message {
-                from: from.0,
-                to: to.0,
-                arrived,
-            });
+        let reaches = !self.faults.partitions.iter().any(is_cut) && self.reaches(from.1, to.1);
+        let arrives = reaches && !self.strikes(self.loss);
+        match (reaches, arrives) {
+            (_, true) => {}
+            (true, false) => self.note(from.0, to.0, Fate::Lost),
+            (false, false) => self.note(from.0, to.0, Fate::OutOfReach),
         }
-        arrived
+        arrives
+    }
+
+    /// Remembers what became of a message, if anybody asks for it.
+    pub(super) fn note(&mut self, from: RobotId, to: RobotId, fate: Fate) {
+        if let Some(messages) = &mut self.messages {
+            messages.push(Message { from, to, fate });
+        }
     }
 
     pub(super) fn listen(&mut self) {

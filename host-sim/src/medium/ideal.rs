@@ -3,7 +3,7 @@
 use planner_core::{Map, RobotId, Status, TileSet};
 
 use super::air::Air;
-use super::{Medium, Message};
+use super::{Fate, Medium, Message};
 use crate::fleet::Robot;
 
 /// Every living robot hands its whole map and its status to every other; all
@@ -72,6 +72,7 @@ impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
                     && voice.id != robot.id
                     && self.air.carries(tick, (voice.id, status.position), to)
                 {
+                    self.air.note(voice.id, robot.id, Fate::Heard);
                     robot.planner.join(&voice.map, pending);
                     robot.planner.hear(voice.id, status);
                     pending.clear();

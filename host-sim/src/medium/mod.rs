@@ -27,21 +27,35 @@ pub trait Medium<const TW: usize, const TH: usize> {
     /// From now on, remember the messages of each tick, if this medium can.
     fn listen(&mut self) {}
 
-    /// The messages of the last tick, if they are remembered.
+    /// The messages of the last tick, if they are remembered. One that comes late is
+    /// among those of every tick until it is heard.
     fn messages(&self) -> &[Message] {
         &[]
     }
 }
 
-/// One message on its way from one robot to another.
+/// One message from one robot to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Message {
     /// Who spoke.
     pub from: RobotId,
     /// Who was to hear.
     pub to: RobotId,
-    /// Whether it arrived: within reach, and not lost. It may come late.
-    pub arrived: bool,
+    /// What became of it in this tick.
+    pub fate: Fate,
+}
+
+/// What becomes of a message in a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    /// It was heard, also if it had been under way for a while.
+    Heard,
+    /// It is under way, and comes in a later tick.
+    UnderWay,
+    /// It was lost.
+    Lost,
+    /// It was not lost, but out of reach from the start.
+    OutOfReach,
 }
 
 /// Names a medium, on the command line and in traces.

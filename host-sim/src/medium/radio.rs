@@ -4,7 +4,7 @@ use planner_core::RobotId;
 use planner_core::radio::MAX_LEN;
 
 use super::air::Air;
-use super::{Medium, Message};
+use super::{Fate, Medium, Message};
 use crate::fleet::Robot;
 
 /// Every robot broadcasts as many frames as its planner's budget allows; the air
@@ -20,6 +20,7 @@ pub struct Radio {
 /// One copy of a frame on its way to one robot.
 struct Flight {
     due: u32,
+    from: RobotId,
     to: RobotId,
     bytes: Vec<u8>,
 }
@@ -53,6 +54,7 @@ impl Radio {
                         for (late, bytes) in self.air.copies(frame) {
                             self.flights.push(Flight {
                                 due: tick.saturating_add(late),
+                                from: from.0,
                                 to: listener.id,
                                 bytes,
                             });
@@ -71,9 +73,13 @@ impl Radio {
         for flight in self.flights.extract_if(.., |flight| flight.due <= tick) {
             let listener = &mut robots[usize::from(flight.to.0)];
             if listener.alive {
+                self.air.note(flight.from, flight.to, Fate::Heard);
                 // What is wrong with a frame is for the planner to find.
                 let _ = listener.planner.receive(&flight.bytes);
             }
+        }
+        for flight in &self.flights {
+            self.air.note(flight.from, flight.to, Fate::UnderWay);
         }
     }
 }

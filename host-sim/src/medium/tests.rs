@@ -8,7 +8,7 @@ use planner_core::{Cell, Extent, Map, RobotId, Status, TileSet};
 use proptest::prelude::*;
 
 use super::air::Air;
-use super::{AirFaults, Medium, MediumKind, Partition, Reach};
+use super::{AirFaults, Fate, Medium, MediumKind, Partition, Reach};
 use crate::fleet::{Death, Faults, Fleet, Robot, Rules};
 use crate::planners::{PlannerKind, Setup};
 use crate::sensor::Sensor;
@@ -172,4 +172,65 @@ fn the_shares_of_the_air_are_kept() {
         .count();
     // Wrong bits can meet and undo each other, rarely.
     assert!((2300..2600).contains(&wrong), "{wrong}");
+}
+
+/// How many messages ended in each way: heard, lost, out of reach; and how often one
+/// was seen under way.
+fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
+    let world = Arc::new(generate(Family::Rooms, 30, 30, 1).unwrap());
+    let starts = world.place(2, &Starts::Random(1), false).unwrap();
+    let extent = world.extent();
+    let build = Box::new(move |id, start| {
+        let link = LinkConfig::new();
+        let setup = Setup {
+            id,
+            extent,
+            start,
+            link,
+        };
+        PlannerKind::Explorer.build(setup).unwrap()
+    });
+    let sensor = Arc::new(Sensor::new(world.clone(), 4));
+    let medium = kind.build(1, loss, faults, 1, world);
+    let mut fleet = Fleet::<SIDE, SIDE>::new(sensor, medium, Rules::default(), build, &starts);
+    fleet.listen();
+    let mut sums = [0; 4];
+    for _ in 0..50 {
+        fleet.tick();
+        for message in fleet.messages() {
+            sums[match message.fate {
+                Fate::Heard => 0,
+                Fate::Lost => 1,
+                Fate::OutOfReach => 2,
+                Fate::UnderWay => 3,
+            }] += 1;
+        }
+    }
+    sums
+}
+
+#[test]
+fn every_message_tells_what_became_of_it() {
+    for kind in [MediumKind::Ideal, MediumKind::Radio] {
+        let [heard, lost, unreached, under_way] = fates(kind, AirFaults::default(), 0.0);
+        assert!(heard > 50 && [lost, unreached, under_way] == [0; 3]);
+        let [heard, lost, ..] = fates(kind, AirFaults::default(), 1.0);
+        assert!(heard == 0 && lost > 50);
+        let apart = AirFaults {
+            partitions: vec![Partition {
+                from: 0,
+                until: 50,
+                border: 1,
+            }],
+            ..AirFaults::default()
+        };
+        let [heard, lost, unreached, _] = fates(kind, apart, 1.0);
+        assert!(heard == 0 && lost == 0 && unreached > 50);
+    }
+    let late = AirFaults {
+        delay: 3,
+        ..AirFaults::default()
+    };
+    let [heard, lost, unreached, under_way] = fates(MediumKind::Radio, late, 0.0);
+    assert!(heard > 50 && under_way > 50 && lost == 0 && unreached == 0);
 }

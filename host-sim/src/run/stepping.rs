@@ -117,7 +117,7 @@ pub trait Stepping {
     fn records(&self) -> &[Record];
     /// From now on, remember the messages of each tick.
     fn listen(&mut self);
-    /// What was said in the last tick, arrived or lost. Empty without
+    /// What was said in the last tick, heard, lost or under way. Empty without
     /// [`listen`](Self::listen).
     fn messages(&self) -> &[Message];
     /// What happened up to now.

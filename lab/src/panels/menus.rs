@@ -15,8 +15,10 @@ use crate::ground::ALL_TICKS;
 use crate::maps::{Map, file_name};
 use crate::platform::{choose_file, save};
 use crate::setup::Setup;
-use crate::survey::{SurveyScene, SurveySetup};
+use crate::survey::{ALTITUDES, CEILINGS, ROBOTS, SIZES, SurveyScene};
 use crate::view::Tool;
+
+const ADDRESS_COPIED: &str = "copied: the part of the page's address behind #";
 
 impl App {
     pub(super) fn menus(&mut self, ui: &mut Ui) {
@@ -175,7 +177,8 @@ impl App {
             }
         });
         if self.layers.radio {
-            let hint = "Lines: heard; dashed: lost. With a crowd, select a robot.";
+            let hint = "Arrow: heard; cross: lost; square: under way. With a crowd, \
+                        select a robot.";
             ui.label(RichText::new(hint).weak());
         }
     }
@@ -219,9 +222,7 @@ impl App {
             }
             if ui.button("Copy address").clicked() {
                 ui.ctx().copy_text(format!("#{}", self.setup.address()));
-                done = Some(Ok(
-                    "copied: the part of the page's address behind #".to_owned()
-                ));
+                done = Some(Ok(ADDRESS_COPIED.to_owned()));
             }
             if ui
                 .add_enabled(is_replay, Button::new("Run again"))
@@ -236,16 +237,6 @@ impl App {
         let digest = self.report().digest;
         if !digest.is_empty() {
             ui.label(format!("trace digest {digest}"));
-        }
-    }
-
-    pub(super) fn fly(&mut self, setup: SurveySetup) {
-        match SurveyScene::new(setup) {
-            Ok(scene) => {
-                self.survey = Some(scene);
-                self.playing = true;
-            }
-            Err(error) => self.fail(error),
         }
     }
 
@@ -270,33 +261,33 @@ impl App {
             true => TerrainSource::Urban(seed),
             false => TerrainSource::Gaussian(seed),
         };
-        ui.add(Slider::new(&mut setup.size, 16..=128).text("columns a side"));
+        ui.add(Slider::new(&mut setup.size, SIZES).text("columns a side"));
         title(ui, "Drones");
-        ui.add(Slider::new(&mut setup.robots, 1..=32).text("drones"));
-        let name = |planner: &Planner| {
-            let value = planner.to_possible_value();
-            value.map_or(String::new(), |value| value.get_name().to_owned())
-        };
-        ComboBox::from_label("planner")
-            .selected_text(name(&setup.planner))
-            .show_ui(ui, |ui| {
-                for planner in Planner::value_variants() {
-                    ui.selectable_value(&mut setup.planner, *planner, name(planner));
-                }
-            });
-        ui.add(Slider::new(&mut setup.min_altitude, 1.0..=6.0).text("least altitude"));
-        ui.add(Slider::new(&mut setup.ceiling, 20.0..=60.0).text("ceiling"));
+        ui.add(Slider::new(&mut setup.robots, ROBOTS).text("drones"));
+        choice(ui, "planner", &mut setup.planner, Planner::value_variants());
+        ui.add(Slider::new(&mut setup.min_altitude, ALTITUDES).text("least altitude"));
+        ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
         ui.horizontal(|ui| {
             number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
         });
+        title(ui, "Radio");
+        choice(
+            ui,
+            "medium",
+            &mut setup.medium,
+            MediumKind::value_variants(),
+        );
+        ui.add(
+            Slider::new(&mut setup.loss, 0.0..=1.0)
+                .max_decimals(2)
+                .text("loss"),
+        );
         title(ui, "View");
         ui.checkbox(&mut survey.shows_hidden, "ground that was not seen");
         ui.checkbox(&mut survey.shows_ceiling, "ceiling");
         let changed = setup != survey.setup;
         title(ui, "Take away");
-        if ui.button("Copy command").clicked() {
-            ui.ctx().copy_text(survey.setup.command());
-        }
+        let done = survey_exports(ui, survey);
         if changed {
             let hidden = (survey.shows_hidden, survey.shows_ceiling);
             self.fly(setup);
@@ -304,7 +295,46 @@ impl App {
                 (survey.shows_hidden, survey.shows_ceiling) = hidden;
             }
         }
+        if let Some(done) = done {
+            self.say(done);
+        }
     }
+}
+
+/// Buttons that take a survey away; says what was done.
+fn survey_exports(ui: &mut Ui, survey: &SurveyScene) -> Option<Result<String, String>> {
+    let (trace, shown) = (survey.trace(), survey.shown() as u32);
+    let name = file_name(trace.terrain.name());
+    let mut done = None;
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("PNG").clicked() {
+            let png = export::survey_png(trace, shown);
+            done = Some(png.and_then(|png| save(&format!("{name}.png"), &png)));
+        }
+        if ui.button("GIF").clicked() {
+            let gif = export::survey_gif(trace);
+            done = Some(gif.and_then(|gif| save(&format!("{name}.gif"), &gif)));
+        }
+        if ui.button("Trace").clicked() {
+            let csv = export::survey_trace(trace);
+            done = Some(csv.and_then(|csv| save(&format!("{name}-trace.csv"), &csv)));
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        let command = survey.setup.command();
+        if ui.button("Copy command").on_hover_text(&command).clicked() {
+            ui.ctx().copy_text(command);
+            done = Some(Ok("copied".to_owned()));
+        }
+        if ui.button("Copy address").clicked() {
+            ui.ctx().copy_text(format!("#{}", survey.setup.address()));
+            done = Some(Ok(ADDRESS_COPIED.to_owned()));
+        }
+    });
+    if let Some(digest) = survey.digest() {
+        ui.label(format!("trace digest {digest}"));
+    }
+    done
 }
 
 fn title(ui: &mut Ui, text: &str) {
@@ -417,5 +447,6 @@ fn radio(ui: &mut Ui, setup: &mut Setup) {
     }
     if setup.medium == MediumKind::Radio {
         ui.add(Slider::new(&mut setup.byte_budget, 1..=500).text("bytes/tick"));
+        ui.add(Slider::new(&mut setup.delay, 0..=20).text("ticks late at most"));
     }
 }

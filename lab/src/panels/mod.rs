@@ -95,9 +95,15 @@ impl App {
     /// How the first run stands, in words.
     fn headline(&self) -> String {
         if let Some(survey) = &self.survey {
-            let seen = survey.curve().last().unwrap_or(0.0);
-            let steps = survey.steps();
-            return format!("{seen:.1} % of the ground seen after {steps} steps");
+            let steps = survey.shown();
+            let seen = survey.curve().nth(steps).unwrap_or(0.0);
+            let name = &survey.trace().terrain.name();
+            let verdict = match () {
+                () if !survey.is_over() || steps < survey.steps() => "",
+                () if survey.is_complete() => ": complete",
+                () => ": over, not complete",
+            };
+            return format!("{name}: {seen:.1} % of the ground seen{verdict}");
         }
         let Some(run) = self.runs.first() else {
             return String::new();

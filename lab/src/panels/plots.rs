@@ -57,6 +57,8 @@ impl App {
         small("ground").show(ui, |plot| {
             let line = Line::new("seen", PlotPoints::from(points));
             plot.line(line.stroke(Stroke::new(2.0, colors.robot(0))));
+            let now = VLine::new("", survey.shown() as f64);
+            plot.vline(now.stroke(Stroke::new(1.0, colors.ink)));
         });
         let state = if survey.is_over() {
             "over"
@@ -69,7 +71,6 @@ impl App {
             0 => "No flight was too low, too high or too near to another.".to_owned(),
             _ => format!("{violations} flights were too low, too high or too near to another."),
         });
-        ui.label(format!("digest {}", survey.digest()));
         ui.label("Drag turns the view, the wheel or two fingers zoom.");
     }
 }

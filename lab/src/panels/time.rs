@@ -17,12 +17,7 @@ impl App {
                 .clicked()
             {
                 self.playing = false;
-                match &mut self.survey {
-                    Some(survey) => survey.step(),
-                    None => {
-                        self.tick();
-                    }
-                }
+                self.tick();
             }
             if ui.button("Restart").clicked() {
                 match &self.survey {
@@ -41,9 +36,6 @@ impl App {
                     .text("ticks/s"),
             );
         });
-        if self.survey.is_some() {
-            return;
-        }
         ui.horizontal(|ui| {
             let last = self.last_tick();
             let mut shown = self.shown_tick();

@@ -42,6 +42,8 @@ impl Browser {
             "--headless".to_owned(),
             "--no-sandbox".into(),
             "--disable-gpu".into(),
+            // Containers have little of what it would use instead.
+            "--disable-dev-shm-usage".into(),
             "--use-angle=swiftshader".into(),
             "--enable-unsafe-swiftshader".into(),
             "--disable-quic".into(),

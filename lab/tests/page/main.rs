@@ -4,13 +4,22 @@
 mod browser;
 
 use std::path::Path;
+use std::process::Command;
 
 use browser::{Browser, serve};
+use host_sim::chip::{Machine, Swarm};
 use host_sim::run::{self, Options};
+use host_sim::survey;
 use lab::setup::Setup;
+use lab::survey::SurveySetup;
+use serde_json::Value;
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
 
 fn page() -> String {
-    let dist = Path::new(env!("CARGO_MANIFEST_DIR")).join("../dist");
+    let dist = root().join("dist");
     assert!(
         dist.join("lab.js").is_file(),
         "there is no page; `cargo xtask lab-web` builds it"
@@ -27,6 +36,62 @@ fn on_host(address: &str) -> String {
     };
     let (_, trace) = run::run(&scenario, options).unwrap();
     trace.unwrap().digest()
+}
+
+/// Runs a command that the lab offers for copying, and returns the digest that it
+/// prints.
+fn by_command(command: &str) -> String {
+    let program = std::env::var_os("HOST_SIM");
+    let program = program.expect("`cargo xtask test --only lab-web` names the simulator");
+    let words = command.strip_prefix("cargo run --release -- ").unwrap();
+    let out = tempfile::tempdir().unwrap();
+    let output = Command::new(program)
+        .current_dir(root())
+        .args(words.split(' '))
+        .args(["--json", "--out"])
+        .arg(out.path().join("run"))
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    let summary: Value = serde_json::from_slice(&output.stdout)
+        .unwrap_or_else(|error| panic!("{command}: {error}: {message}"));
+    summary["trace_digest"].as_str().unwrap().to_owned()
+}
+
+/// The digest that the page tells when it has played an address to its end.
+fn on_page(browser: &Browser, page: &str, address: &str) -> String {
+    browser.open(&format!("{page}#{address}"));
+    browser.wait("state", |state| {
+        state == "complete" || state == "incomplete"
+    });
+    browser.data("digest")
+}
+
+#[test]
+#[ignore = "needs the page, a browser and QEMU: cargo xtask test --only lab-web"]
+fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
+    let (page, browser) = (page(), Browser::start(1280, 800));
+    for address in [
+        "map=ward&robots=3&loss=0.3&delay=2&seed=5",
+        "map=circle&planner=local-frontiers&robots=2&medium=ideal",
+    ] {
+        let command = Setup::from_address(address).unwrap().command();
+        let here = by_command(&command);
+        let chips = by_command(&command.replace(" explore ", " firmware "));
+        assert_eq!(on_page(&browser, &page, address), here, "{address}");
+        assert_eq!(chips, here, "{address}");
+    }
+    let address = "terrain=urban:3&size=40&robots=3&loss=0.2&seed=4";
+    let setup = SurveySetup::from_address(address).unwrap();
+    let here = by_command(&setup.command());
+    let machine = Machine::Netduinoplus2;
+    let swarm = Swarm::new(machine, root().join(machine.image()));
+    let terrain = setup.terrain.load(setup.size).unwrap();
+    let chips = survey::run_on(&swarm, &terrain, &setup.scenario()).unwrap();
+    swarm.finish().unwrap();
+    assert_eq!(on_page(&browser, &page, address), here, "{address}");
+    assert_eq!(chips.digest(), here, "{address}");
+    assert_eq!(browser.console(), [""; 0]);
 }
 
 #[test]
@@ -46,10 +111,11 @@ fn the_page_explores_as_the_host_does() {
         "map=circle&planner=minpos&medium=ideal&robots=2&solid",
         "map=generate:cave:70x50:2&planner=local-frontiers&robots=3&radio-range=12",
     ] {
-        browser.open(&format!("{page}#{address}"));
-        let ended = |state: &str| state == "complete" || state == "incomplete";
-        browser.wait("state", ended);
-        assert_eq!(browser.data("digest"), on_host(address), "{address}");
+        assert_eq!(
+            on_page(&browser, &page, address),
+            on_host(address),
+            "{address}"
+        );
     }
     assert_eq!(browser.console(), [""; 0]);
 }
@@ -83,9 +149,11 @@ fn dropped_maps_are_explored_or_refused_with_a_sentence() {
 #[ignore = "needs the page and a browser: cargo xtask test --only lab-web"]
 fn a_bad_address_says_so() {
     let (page, browser) = (page(), Browser::start(400, 800));
-    browser.open(&format!("{page}#robots=many"));
-    let error = browser.wait("error", |error| !error.is_empty());
-    assert!(error.contains("robots=many"), "{error}");
+    for address in ["robots=many", "terrain=urban:1&robots=many"] {
+        browser.open(&format!("{page}#{address}"));
+        let error = browser.wait("error", |error| !error.is_empty());
+        assert!(error.contains("robots=many"), "{error}");
+    }
     assert_eq!(browser.console(), [""; 0]);
 }
 
@@ -116,7 +184,7 @@ fn crowd() {
 #[ignore = "for the eye: cargo test -p lab --test page -- --ignored pictures"]
 fn pictures() {
     let page = page();
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target");
+    let folder = root().join("target");
     for (name, width, height) in [("laptop", 1280, 800), ("phone", 400, 800)] {
         let browser = Browser::start(width, height);
         browser.open(&page);

@@ -46,7 +46,7 @@ fn laptop_in_the_light() {
 #[test]
 fn laptop_in_the_dark_with_a_robot_selected() {
     let mut harness = harness(
-        "map=generate:cave:64x48:4&robots=5",
+        "map=generate:cave:64x48:4&robots=5&loss=0.3&delay=2",
         1280.0,
         800.0,
         Theme::Dark,
@@ -77,11 +77,68 @@ fn hills_from_above() {
     harness.run_steps(2);
     harness.state_mut().playing = false;
     harness.state_mut().speed = 60.0;
-    for _ in 0..60 {
-        harness.state_mut().survey.as_mut().unwrap().step();
-    }
-    harness.run();
+    let shown = harness.state().shown_tick();
+    play(&mut harness, 60 - shown);
     compare(&mut harness, "survey");
+}
+
+#[test]
+fn a_survey_on_a_phone() {
+    let mut harness = harness("terrain=urban:3&size=40", 390.0, 780.0, Theme::Light);
+    play(&mut harness, 40);
+    compare(&mut harness, "phone-survey");
+}
+
+/// Clicks a button, and returns what it has put on the clipboard.
+fn copied(harness: &mut Harness<'static, App>, button: &str) -> String {
+    // What the last click has changed moves the buttons.
+    harness.run();
+    harness.get_by_label(button).click();
+    for _ in 0..4 {
+        harness.step();
+        for command in &harness.output().platform_output.commands {
+            if let egui::OutputCommand::CopyText(text) = command {
+                return text.clone();
+            }
+        }
+    }
+    panic!("{button} copies nothing");
+}
+
+#[test]
+fn a_survey_comes_by_address_is_gone_back_through_and_shared() {
+    let address = "terrain=urban:3&size=24&robots=2";
+    let mut harness = harness(address, 1280.0, 800.0, Theme::Light);
+    play(&mut harness, 12);
+    for (key, shown) in [
+        (Key::ArrowLeft, 11),
+        (Key::Home, 0),
+        (Key::ArrowRight, 1),
+        (Key::End, 12),
+    ] {
+        harness.key_press(key);
+        harness.run();
+        let state = harness.state();
+        assert_eq!((state.shown_tick(), state.last_tick()), (shown, 12));
+    }
+    let setup = harness.state().survey.as_ref().unwrap().setup.clone();
+    assert_eq!(copied(&mut harness, "Copy command"), setup.command());
+    assert_eq!(copied(&mut harness, "Copy address"), format!("#{address}"));
+    while harness.state_mut().tick() {}
+    harness.run();
+    let report = harness.state().report();
+    assert_eq!(report.state, "complete");
+    harness.get_by_label(&format!("trace digest {}", report.digest));
+}
+
+#[test]
+fn an_exploration_is_shared() {
+    let address = "map=circle&robots=2&delay=1";
+    let mut harness = harness(address, 1280.0, 1000.0, Theme::Light);
+    harness.run();
+    let setup = harness.state().setup.clone();
+    assert_eq!(copied(&mut harness, "Copy command"), setup.command());
+    assert_eq!(copied(&mut harness, "Copy address"), format!("#{address}"));
 }
 
 #[test]

@@ -136,8 +136,8 @@ pub(crate) fn decides_as_the_host_with_micromath() -> Result<String> {
     cargo_build(TARGET).args(["--bin=robot", MICROMATH]).run()?;
     let flash = flash(&path("robot", TARGET))?;
     let output = show(
-        cargo(["test", "--package=host-sim", "--test=chips", "--locked"])
-            .args([MICROMATH, "--", "--ignored", "--nocapture"])
+        host::test()
+            .args([MICROMATH, "--test=chips", "--", "--ignored", "--nocapture"])
             .arg("flying_robots_decide_on_the_chip_as_on_the_host"),
     )?;
     print!("{}", output.stdout);

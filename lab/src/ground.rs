@@ -111,7 +111,7 @@ pub fn update(
     colors: &Colors,
 ) -> bool {
     let shown = watch.shown();
-    // Other robots' ways and a robot's radio change cells anywhere.
+    // Who is nearest, and what one robot hears, changes cells anywhere.
     if shown < since || matches!(subject, Subject::Robot(_)) || layers.owners {
         return false;
     }

@@ -2,6 +2,7 @@
 
 use egui::{Color32, ColorImage};
 use host_sim::run::Stepping;
+use host_sim::trace::Record;
 use planner_core::map::TileIndex;
 use planner_core::{Cell, Direction, Extent};
 
@@ -68,32 +69,16 @@ enum Known {
 
 /// Every cell of the watched world in its colour, as `subject` has it.
 pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) -> ColorImage {
-    let world = &watch.scenario().world;
-    let extent = world.extent();
+    let extent = watch.scenario().world.extent();
     let state = watch.state();
     let known = match (subject, state) {
         (Subject::Robot(robot), Some(state)) => of_robot(state, robot, extent),
-        _ => of_team(watch),
+        _ => cells(extent).map(|cell| of_team(watch, cell)).collect(),
     };
     let width = usize::from(extent.width);
     let at = |cell: Cell| known[cell.y as usize * width + cell.x as usize];
-    let is_frontier = |cell: Cell| {
-        let beside = |next: Cell| extent.contains(next) && at(next) == Known::Unknown;
-        Direction::ALL.iter().any(|&way| beside(cell.step(way)))
-    };
-    let mut pixels = Vec::with_capacity(known.len());
-    for cell in cells(extent) {
-        pixels.push(match (at(cell), subject) {
-            (Known::Free, Subject::World) => colors.free,
-            (Known::Free, _) if layers.frontiers && is_frontier(cell) => colors.frontier,
-            (Known::Free, _) if layers.visited && watch.is_visited(cell) => colors.visited,
-            (Known::Free, _) => colors.free,
-            (Known::Obstacle, _) => colors.obstacle,
-            (Known::Unknown, Subject::World) if !world.is_free(cell) => colors.hidden,
-            (Known::Unknown, Subject::World) if watch.reachable().contains(cell) => colors.unseen,
-            (Known::Unknown, _) => colors.unknown,
-        });
-    }
+    let pixel = |cell| pixel(watch, subject, layers, colors, at, cell);
+    let mut pixels: Vec<_> = cells(extent).map(pixel).collect();
     let free = |cell: Cell| at(cell) == Known::Free;
     if layers.owners && subject != Subject::World {
         for (pixel, owner) in pixels.iter_mut().zip(owners(watch, free)) {
@@ -115,14 +100,73 @@ pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) 
     ColorImage::new([width, extent.height.into()], pixels)
 }
 
-fn of_team(watch: &Watch) -> Vec<Known> {
+/// Brings a picture of [`image`] from an earlier tick to the shown one, where that takes
+/// only the cells that were seen or visited since; false if it takes more.
+pub fn update(
+    image: &mut ColorImage,
+    since: u32,
+    watch: &Watch,
+    subject: Subject,
+    layers: &Layers,
+    colors: &Colors,
+) -> bool {
+    let shown = watch.shown();
+    // Who is nearest, and what one robot hears, changes cells anywhere.
+    if shown < since || matches!(subject, Subject::Robot(_)) || layers.owners {
+        return false;
+    }
+    let extent = watch.scenario().world.extent();
+    let at = |cell| of_team(watch, cell);
+    let mut renew = |cell: Cell| {
+        let index = cell.y as usize * image.size[0] + cell.x as usize;
+        image.pixels[index] = pixel(watch, subject, layers, colors, at, cell);
+    };
+    for &cell in watch.news(since..shown) {
+        renew(cell);
+        // What was a frontier may be none any more.
+        let beside = Direction::ALL.map(|way| cell.step(way));
+        let beside = beside.into_iter().filter(|&cell| extent.contains(cell));
+        beside.for_each(&mut renew);
+    }
+    for record in (since..shown).flat_map(|tick| watch.records_of(tick)) {
+        renew(record.at);
+    }
+    true
+}
+
+/// A cell in its colour, given what is known.
+fn pixel(
+    watch: &Watch,
+    subject: Subject,
+    layers: &Layers,
+    colors: &Colors,
+    known: impl Fn(Cell) -> Known,
+    cell: Cell,
+) -> Color32 {
     let world = &watch.scenario().world;
-    let known = |cell: Cell| match (watch.is_seen(cell), world.is_free(cell)) {
+    let is_frontier = || {
+        let beside = |next: Cell| world.extent().contains(next) && known(next) == Known::Unknown;
+        Direction::ALL.iter().any(|&way| beside(cell.step(way)))
+    };
+    match (known(cell), subject) {
+        (Known::Free, Subject::World) => colors.free,
+        (Known::Free, _) if layers.frontiers && is_frontier() => colors.frontier,
+        (Known::Free, _) if layers.visited && watch.is_visited(cell) => colors.visited,
+        (Known::Free, _) => colors.free,
+        (Known::Obstacle, _) => colors.obstacle,
+        (Known::Unknown, Subject::World) if !world.is_free(cell) => colors.hidden,
+        (Known::Unknown, Subject::World) if watch.reachable().contains(cell) => colors.unseen,
+        (Known::Unknown, _) => colors.unknown,
+    }
+}
+
+/// What all robots together know of a cell.
+fn of_team(watch: &Watch, cell: Cell) -> Known {
+    match (watch.is_seen(cell), watch.scenario().world.is_free(cell)) {
         (false, _) => Known::Unknown,
         (true, true) => Known::Free,
         (true, false) => Known::Obstacle,
-    };
-    cells(world.extent()).map(known).collect()
+    }
 }
 
 fn of_robot(state: &dyn Stepping, robot: usize, extent: Extent) -> Vec<Known> {
@@ -184,14 +228,7 @@ pub(crate) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
 pub(crate) fn ways(watch: &Watch, trail: u32) -> Vec<Vec<Cell>> {
     let robots = watch.scenario().starts.len();
     let mut ways: Vec<Vec<Cell>> = vec![Vec::new(); robots];
-    let begin = match trail {
-        ALL_TICKS.. => 0,
-        ticks => watch.shown().saturating_sub(ticks),
-    };
-    let skipped: usize = watch
-        .records()
-        .partition_point(|record| record.tick < begin);
-    for record in &watch.records()[skipped..] {
+    for record in trail_records(watch, trail) {
         let Some(way) = ways.get_mut(usize::from(record.robot)) else {
             continue;
         };
@@ -202,15 +239,30 @@ pub(crate) fn ways(watch: &Watch, trail: u32) -> Vec<Vec<Cell>> {
         if way.last() == Some(&cell) {
             continue;
         }
-        if let [.., a, b] = way[..]
-            && (b.x - a.x).signum() == (cell.x - b.x).signum()
-            && (b.y - a.y).signum() == (cell.y - b.y).signum()
-        {
-            way.pop();
-        }
-        way.push(cell);
+        extend(way, cell);
     }
     ways
+}
+
+/// Adds a cell to a way of corners.
+pub(crate) fn extend(way: &mut Vec<Cell>, cell: Cell) {
+    if let [.., a, b] = way[..]
+        && (b.x - a.x).signum() == (cell.x - b.x).signum()
+        && (b.y - a.y).signum() == (cell.y - b.y).signum()
+    {
+        way.pop();
+    }
+    way.push(cell);
+}
+
+/// What happened in the last `trail` ticks before the shown one.
+pub(crate) fn trail_records(watch: &Watch, trail: u32) -> &[Record] {
+    let begin = match trail {
+        ALL_TICKS.. => 0,
+        ticks => watch.shown().saturating_sub(ticks),
+    };
+    let records = watch.records();
+    &records[records.partition_point(|record| record.tick < begin)..]
 }
 
 /// A pixel image as bytes, three a pixel.
@@ -218,4 +270,39 @@ pub(crate) fn rgb(pixels: &[Color32]) -> impl Iterator<Item = u8> + '_ {
     pixels
         .iter()
         .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setup::Setup;
+
+    #[test]
+    fn a_picture_kept_from_tick_to_tick_is_the_picture() {
+        let setup = Setup::from_address("map=generate:rooms:32x24:3&robots=3&kill=1@30").unwrap();
+        let mut watch = Watch::new(setup.scenario().unwrap()).unwrap();
+        let (layers, colors) = (
+            Layers {
+                visited: true,
+                ..Layers::default()
+            },
+            &Colors::LIGHT,
+        );
+        for subject in [Subject::World, Subject::Team] {
+            watch.show(0);
+            let mut kept = image(&watch, subject, &layers, colors);
+            for ticks in [1, 1, 5, 20, 60] {
+                let since = watch.shown();
+                for _ in 0..ticks {
+                    watch.tick();
+                }
+                assert!(update(&mut kept, since, &watch, subject, &layers, colors));
+                let anew = image(&watch, subject, &layers, colors);
+                assert!(kept.pixels == anew.pixels, "{subject:?} in tick {since}");
+            }
+            let since = watch.shown();
+            watch.show(since - 1);
+            assert!(!update(&mut kept, since, &watch, subject, &layers, colors));
+        }
+    }
 }

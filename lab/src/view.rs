@@ -2,7 +2,7 @@
 //! pointer does to it.
 
 use egui::{
-    Align2, Color32, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, TextureHandle,
+    Align2, Color32, ColorImage, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, pos2, vec2,
 };
 use host_sim::medium::{Fate, Message};
@@ -83,6 +83,10 @@ pub struct View {
     texture: Option<TextureHandle>,
     /// What the texture shows.
     key: Option<Key>,
+    /// The cells in their colours, without what moves over them.
+    ground: ColorImage,
+    /// The texture's pixels, and those before: no memory is taken for a tick.
+    pixels: [ColorImage; 2],
     dragged: Option<usize>,
 }
 
@@ -94,7 +98,16 @@ struct Key {
     subject: Subject,
     layers: Layers,
     colors: Colors,
+    /// Whose way is not dim, if the texture shows ways.
+    ways: Option<Option<usize>>,
 }
+
+/// Below so many points a cell, ways and plans are pixels of the ground: thousands of
+/// lines take longer, and could not be told apart.
+const COARSE: f32 = 3.0;
+
+/// Side of the squares, in cells, in which a texture is renewed.
+const PATCH: usize = 32;
 
 /// What is shown in a view.
 pub struct Frame<'a> {
@@ -122,7 +135,7 @@ impl View {
         steer(ui, &response, camera, &place, frame.tool);
         place = Place::new(rect, extent, camera);
 
-        self.paint_ground(ui, frame, &colors);
+        self.paint_ground(ui, frame, &place, &colors);
         let painter = ui.painter_at(rect);
         if let Some(texture) = &self.texture {
             let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
@@ -137,26 +150,54 @@ impl View {
         self.deed(&response, &place, frame)
     }
 
-    fn paint_ground(&mut self, ui: &Ui, frame: &Frame<'_>, colors: &Colors) {
+    fn paint_ground(&mut self, ui: &Ui, frame: &Frame<'_>, place: &Place, colors: &Colors) {
+        let &Frame {
+            watch,
+            subject,
+            layers,
+            ..
+        } = frame;
         let key = Key {
             run: frame.run,
-            shown: frame.watch.shown(),
-            has_state: frame.watch.state().is_some(),
-            subject: frame.subject,
-            layers: *frame.layers,
+            shown: watch.shown(),
+            has_state: watch.state().is_some(),
+            subject,
+            layers: *layers,
             colors: *colors,
+            ways: place.is_coarse().then_some(frame.selected),
         };
         if self.key.as_ref() == Some(&key) {
             return;
         }
-        let image = ground::image(frame.watch, frame.subject, frame.layers, colors);
+        let kept = self.key.as_ref().filter(|old| {
+            let then = Key {
+                shown: old.shown,
+                has_state: old.has_state,
+                ways: old.ways,
+                ..key.clone()
+            };
+            **old == then
+        });
+        let is_renewed = kept.is_some_and(|old| {
+            ground::update(&mut self.ground, old.shown, watch, subject, layers, colors)
+        });
+        if !is_renewed {
+            self.ground = ground::image(watch, subject, layers, colors);
+        }
+        self.pixels.swap(0, 1);
+        let [pixels, old] = &mut self.pixels;
+        pixels.size = self.ground.size;
+        pixels.pixels.clone_from(&self.ground.pixels);
+        if place.is_coarse() {
+            draw_ways(pixels, frame, colors);
+        }
         match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::NEAREST),
+            Some(texture) if old.size == pixels.size => renew(texture, old, pixels),
+            Some(texture) => texture.set(pixels.clone(), TextureOptions::NEAREST),
             None => {
-                let texture = ui
-                    .ctx()
-                    .load_texture("ground", image, TextureOptions::NEAREST);
-                self.texture = Some(texture);
+                let image = pixels.clone();
+                let context = ui.ctx();
+                self.texture = Some(context.load_texture("ground", image, TextureOptions::NEAREST));
             }
         }
         self.key = Some(key);
@@ -185,6 +226,75 @@ impl View {
                 response.clicked().then_some(cell?).map(Deed::Placed)
             }
         }
+    }
+}
+
+/// Brings to the graphics card what differs.
+fn renew(texture: &mut TextureHandle, old: &ColorImage, new: &ColorImage) {
+    let [width, height] = new.size;
+    for top in (0..height).step_by(PATCH) {
+        for left in (0..width).step_by(PATCH) {
+            let (right, bottom) = ((left + PATCH).min(width), (top + PATCH).min(height));
+            let rows = || (top..bottom).map(|y| y * width + left..y * width + right);
+            if rows().any(|row| old.pixels[row.clone()] != new.pixels[row]) {
+                let pixels = rows().flat_map(|row| &new.pixels[row]).copied().collect();
+                let patch = ColorImage::new([right - left, bottom - top], pixels);
+                texture.set_partial([left, top], patch, TextureOptions::NEAREST);
+            }
+        }
+    }
+}
+
+/// Ways and plans as pixels, those of the selected robot over all others.
+fn draw_ways(image: &mut ColorImage, frame: &Frame<'_>, colors: &Colors) {
+    let watch = frame.watch;
+    let extent = watch.scenario().world.extent();
+    // Fainter than the robots.
+    let faint = |robot| mix(colors.free, robot_color(frame, colors, robot), 0.65);
+    let faint: Vec<Color32> = (0..watch.scenario().starts.len()).map(faint).collect();
+    let mut dot = |cell: Cell, robot: usize| {
+        if extent.contains(cell) {
+            let index = cell.y as usize * image.size[0] + cell.x as usize;
+            image.pixels[index] = faint.get(robot).copied().unwrap_or(colors.ink);
+        }
+    };
+    let is_selected = |robot: usize| frame.selected == Some(robot);
+    if frame.subject == Subject::World {
+        let records = match frame.layers.trail {
+            0 => &[],
+            trail => ground::trail_records(watch, trail),
+        };
+        for on_top in [false, true] {
+            for record in records {
+                let robot = usize::from(record.robot);
+                if is_selected(robot) == on_top {
+                    dot(record.at, robot);
+                }
+            }
+        }
+    } else if let (true, Some(state)) = (frame.layers.plans, watch.state()) {
+        let positions = watch.positions();
+        for on_top in [false, true] {
+            for record in watch.last_records() {
+                let robot = usize::from(record.robot);
+                if let (Some(&at), true) = (positions.get(robot), is_selected(robot) == on_top) {
+                    let mut cell = at;
+                    for step in state.way(robot) {
+                        cell = cell.step(step);
+                        dot(cell, robot);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The colour of a robot's marks: dim if another one is looked at.
+fn robot_color(frame: &Frame<'_>, colors: &Colors, robot: usize) -> Color32 {
+    let color = colors.robot(robot);
+    match frame.selected {
+        Some(selected) if selected != robot => mix(colors.free, color, 0.4),
+        _ => color,
     }
 }
 
@@ -249,6 +359,11 @@ impl Place {
         self.extent.contains(cell).then_some(cell)
     }
 
+    /// Whether cells are too small for lines between them.
+    fn is_coarse(&self) -> bool {
+        self.scale < COARSE
+    }
+
     /// Radius of a robot: large enough to be seen and hit on any map.
     fn robot(&self) -> f32 {
         (self.scale * 0.42).clamp(3.5, 14.0)
@@ -276,21 +391,13 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
     let watch = frame.watch;
     let robots = watch.scenario().starts.len();
     let mut shapes = Vec::new();
-    let is_dim = |robot: usize| frame.selected.is_some_and(|selected| selected != robot);
-    let color = |robot: usize| {
-        let color = colors.robot(robot);
-        if is_dim(robot) {
-            mix(colors.free, color, 0.4)
-        } else {
-            color
-        }
-    };
-    if frame.layers.trail > 0 && frame.subject == Subject::World {
+    let color = |robot: usize| robot_color(frame, colors, robot);
+    if frame.layers.trail > 0 && frame.subject == Subject::World && !place.is_coarse() {
         let width = (place.scale * 0.12).clamp(1.0, 2.5);
         for (robot, way) in ground::ways(watch, frame.layers.trail).iter().enumerate() {
             let lane = place.lane(robot, robots);
-            let points = way.iter().map(|&cell| place.middle(cell) + lane).collect();
-            shapes.push(Shape::line(points, Stroke::new(width, color(robot))));
+            let stroke = Stroke::new(width, color(robot));
+            shapes.extend(lines(way, |cell| place.middle(cell) + lane, stroke));
         }
     }
     let positions = watch.positions();
@@ -301,14 +408,15 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
                 continue;
             };
             let stroke = Stroke::new((place.scale * 0.15).clamp(1.2, 3.0), color(robot));
-            if let (true, Some(state)) = (frame.layers.plans, watch.state()) {
+            let plans = frame.layers.plans && !place.is_coarse();
+            if let (true, Some(state)) = (plans, watch.state()) {
                 let mut cell = at;
-                let mut points = vec![place.middle(cell)];
+                let mut way = vec![cell];
                 for step in state.way(robot) {
                     cell = cell.step(step);
-                    points.push(place.middle(cell));
+                    ground::extend(&mut way, cell);
                 }
-                shapes.push(Shape::line(points, stroke));
+                shapes.extend(lines(&way, |cell| place.middle(cell), stroke));
             }
             if let (true, Some(goal)) = (frame.layers.goals, record.goal) {
                 let (middle, arm) = (place.middle(goal), place.robot() * 0.8);
@@ -326,6 +434,22 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
         shapes.extend(messages(frame, state, place, colors));
     }
     shapes
+}
+
+/// A way as lines, one as far as it does not turn back: there, egui would widen it.
+fn lines(way: &[Cell], middle: impl Fn(Cell) -> Pos2, stroke: Stroke) -> Vec<Shape> {
+    let mut lines = Vec::new();
+    let mut points: Vec<Pos2> = Vec::new();
+    for point in way.iter().map(|&cell| middle(cell)) {
+        if let [.., a, b] = points[..]
+            && (b - a).dot(point - b) < 0.0
+        {
+            lines.push(Shape::line(std::mem::replace(&mut points, vec![b]), stroke));
+        }
+        points.push(point);
+    }
+    lines.push(Shape::line(points, stroke));
+    lines
 }
 
 /// What was said in the last tick. A message that was heard ends in an arrow, one that
@@ -406,7 +530,9 @@ fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, color
         let middle = place.middle(cell);
         let color = colors.robot(robot);
         if lives {
-            painter.circle(middle, radius, color, Stroke::new(1.0, colors.ink));
+            // Two discs are two quads each; a disc with an edge is dozens of triangles.
+            painter.circle_filled(middle, radius + 0.5, colors.ink);
+            painter.circle_filled(middle, radius - 0.5, color);
         } else {
             painter.circle(middle, radius, colors.unknown, Stroke::new(2.0, color));
             let arm = vec2(radius, radius) * 0.6;

@@ -1,6 +1,7 @@
 //! A run that is watched: what happened in every tick so far, and the state of all
 //! robots at the tick that is shown.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use host_sim::run::{self, Outcome, Scenario, Stepping};
@@ -49,6 +50,8 @@ struct History {
     first: Vec<usize>,
     /// When each cell was first seen by anybody, row by row.
     seen_since: Vec<u32>,
+    /// Every cell that was seen, in the order of the ticks.
+    news: Vec<Cell>,
     /// When a robot first stood on each cell, row by row.
     visited_since: Vec<u32>,
     series: Vec<Point>,
@@ -295,6 +298,13 @@ impl Watch {
         self.history.seen_since[self.index(cell)] < self.shown
     }
 
+    /// The cells that were first seen in these ticks.
+    pub fn news(&self, ticks: Range<u32>) -> &[Cell] {
+        let news = &self.history.news;
+        let before = |tick: u32| news.partition_point(|&cell| self.seen_since(cell) < tick);
+        &news[before(ticks.start)..before(ticks.end)]
+    }
+
     /// The tick in which the cell was first seen; [`NEVER`] if it was not.
     pub fn seen_since(&self, cell: Cell) -> u32 {
         self.history.seen_since[self.index(cell)]
@@ -386,6 +396,7 @@ impl History {
                 for cell in view.free_cells().chain(view.blocked_cells()) {
                     if extent.contains(cell) && self.seen_since[index(cell)] == NEVER {
                         self.seen_since[index(cell)] = tick;
+                        self.news.push(cell);
                         self.seen_cells += u32::from(reachable.contains(cell));
                     }
                 }

@@ -87,9 +87,14 @@ impl App {
                 ui.ctx()
                     .set_theme(if dark { Theme::Light } else { Theme::Dark });
             }
-            ui.separator();
-            ui.label(self.headline());
+            if !is_narrow {
+                ui.separator();
+                ui.label(self.headline());
+            }
         });
+        if is_narrow {
+            ui.label(self.headline());
+        }
     }
 
     /// How the first run stands, in words.

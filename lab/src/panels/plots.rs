@@ -1,14 +1,16 @@
 //! Coverage, work and bytes, tick by tick.
 
-use egui::{RichText, Stroke, Ui};
-use egui_plot::{Corner, Legend, Line, Plot, PlotPoints, VLine};
+use egui::{Rangef, RichText, Stroke, Ui};
+use egui_plot::{
+    AxisHints, Corner, GridInput, Legend, Line, Plot, PlotPoints, VLine, uniform_grid_spacer,
+};
 
 use crate::app::{App, Shown};
 use crate::colors::Colors;
 use crate::watch::Point;
 
-/// Points on a curve at most: more could not be told apart.
-const POINTS: usize = 600;
+/// Points on a curve at most: one for each of the panel's pixels, about.
+const POINTS: usize = 240;
 
 /// What a plot draws of a tick; the second argument is the number of cells in all.
 type Value = fn(&Point, u32) -> f64;
@@ -76,13 +78,36 @@ impl App {
 }
 
 fn small(name: &str) -> Plot<'_> {
+    let along = AxisHints::new_x().label_spacing(Rangef::new(30.0, 35.0));
+    // Room for numbers that come with the first peak.
+    let up = AxisHints::new_y()
+        .min_thickness(44.0)
+        .label_spacing(Rangef::new(12.0, 15.0));
     Plot::new(name)
         .height(110.0)
         .include_y(0.0)
+        .custom_x_axes(vec![along])
+        .custom_y_axes(vec![up])
+        .x_grid_spacer(uniform_grid_spacer(steps))
+        .y_grid_spacer(uniform_grid_spacer(steps))
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
         .allow_boxed_zoom(false)
+}
+
+/// Between two lines of the grid: 1, 2, or 5 times a power of ten, so that two to five
+/// lines have room for their numbers.
+fn steps(input: GridInput) -> [f64; 3] {
+    let half = ((input.bounds.1 - input.bounds.0) / 2.0).max(1e-9);
+    let power = 10_f64.powf(half.log10().floor());
+    let step = match half / power {
+        5.0.. => 5.0 * power,
+        2.0.. => 2.0 * power,
+        _ => power,
+    };
+    // Lines of one kind.
+    [step; 3]
 }
 
 fn curve(run: &Shown, value: Value) -> PlotPoints<'static> {

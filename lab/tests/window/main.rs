@@ -59,6 +59,14 @@ fn laptop_in_the_dark_with_a_robot_selected() {
 }
 
 #[test]
+fn a_crowd_on_a_large_map() {
+    let address = "map=generate:rooms:256x256:1&robots=100&start=random";
+    let mut harness = harness(address, 1280.0, 800.0, Theme::Light);
+    play(&mut harness, 100);
+    compare(&mut harness, "crowd");
+}
+
+#[test]
 fn phone() {
     let mut harness = harness("map=circle&robots=2", 390.0, 780.0, Theme::Light);
     play(&mut harness, 25);

@@ -1,7 +1,7 @@
 //! Robot-ticks per second on one core: 10 robots on 64×64 cells, an exchange in
 //! every tick, no trace.
 //!
-//! `cargo bench -p host-sim --bench speed`
+//! `cargo bench -p host-sim --bench speed`, and behind it ` -- explorer` for one planner.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,11 +14,17 @@ use host_sim::world::{Family, Starts, generate};
 const TIME: Duration = Duration::from_secs(1);
 
 fn main() {
+    // Cargo adds an option of its own.
+    let wanted = std::env::args().skip(1).find(|name| !name.starts_with('-'));
     for planner in [
         PlannerKind::Explorer,
         PlannerKind::Closest,
         PlannerKind::MinPos,
     ] {
+        let name = planner.to_string();
+        if wanted.as_ref().is_some_and(|wanted| *wanted != name) {
+            continue;
+        }
         for family in [Family::Cave, Family::PerfectMaze, Family::Open] {
             let speed = robot_ticks_per_second(planner, family);
             println!("{planner:>10}, {family:>12}: {speed:>8.0} thousand robot-ticks per second");

@@ -118,11 +118,23 @@ impl Sighting {
         (usize::from(column) < SPAN && row < SPAN).then(|| (row, 1 << column))
     }
 
-    /// The block of tiles that the rows touch: its corner in tiles, and its side.
-    pub(crate) const fn tile_block(&self) -> ((i16, i16), u8) {
+    /// The block of tiles that holds all cells seen: its corner in tiles, and its side,
+    /// at most five.
+    pub(crate) fn tile_block(&self) -> ((i16, i16), u8) {
+        // The robot's own cell is among them.
+        let (mut columns, mut rows) = (1u32 << MAX_RADIUS, 1u32 << MAX_RADIUS);
+        for (row, (free, blocked)) in self.free.iter().zip(&self.blocked).enumerate() {
+            columns |= free | blocked;
+            rows |= u32::from(free | blocked != 0) << row;
+        }
         let (x, y) = self.corner();
-        // 31 cells touch at most five tiles.
-        ((x >> 3, y >> 3), 5)
+        let tiles = |corner: i16, seen: u32| {
+            let tile = |bit: u32| corner.saturating_add(bit as i16) >> 3;
+            (tile(seen.trailing_zeros()), tile(31 - seen.leading_zeros()))
+        };
+        let ((west, east), (north, south)) = (tiles(x, columns), tiles(y, rows));
+        let side = 1 + (east - west).max(south - north);
+        ((west, north), side as u8)
     }
 
     /// The cells of one tile seen free and seen blocked. Work: eight rows.

@@ -100,7 +100,7 @@ pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) 
     ColorImage::new([width, extent.height.into()], pixels)
 }
 
-/// Brings a picture of [`image`] from an earlier tick to the shown one, where that takes
+/// Brings a picture of [`image()`] from an earlier tick to the shown one, where that takes
 /// only the cells that were seen or visited since; false if it takes more.
 pub fn update(
     image: &mut ColorImage,

@@ -1,8 +1,8 @@
 //! One robot's end of the radio: numbering, budget, what to send, what to believe.
 
-use crc::{CRC_16_IBM_SDLC, Crc, NoTable};
 use heapless::Vec;
 
+use super::envelope::CHECK;
 use super::frame::{Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 use super::outbox::Outbox;
 use crate::cell::Extent;
@@ -20,8 +20,7 @@ impl GridId {
     /// A short hash (CRC-16/X-25) of the grid: its size in cells, where cell
     /// `(0, 0)` lies in the common frame, and the side of a cell, in millimetres.
     pub fn of(extent: Extent, origin_mm: (i32, i32), cell_mm: u16) -> Self {
-        let crc = Crc::<u16, NoTable>::new(&CRC_16_IBM_SDLC);
-        let mut digest = crc.digest();
+        let mut digest = CHECK.digest();
         digest.update(&extent.width.to_le_bytes());
         digest.update(&extent.height.to_le_bytes());
         digest.update(&origin_mm.0.to_le_bytes());

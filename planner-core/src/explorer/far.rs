@@ -8,7 +8,7 @@
 use heapless::Vec;
 
 use super::others::Others;
-use super::patch::{Patch, connected};
+use super::patch::connected;
 use super::path::Path;
 use super::surroundings::Surroundings;
 use super::wave::{LABELS, Wave};
@@ -29,7 +29,7 @@ const FRONT_WORK: u32 = 4;
 const BESIDE_WORK: u32 = 3;
 
 /// What speaking for a frontier costs in the same unit.
-const PATCH_WORK: u32 = 10;
+const PATCH_WORK: u32 = 56;
 
 /// What following a way back costs at most: its first 256 steps.
 pub(crate) const WAY_WORK: u32 = 128;
@@ -265,13 +265,8 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
     /// it will see what lies behind them.
     fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
         *work += PATCH_WORK;
-        let patch = Patch::around(goal);
-        let frontier = patch.parts().fold(0, |cells, part| {
-            cells | part.to_patch(around.map.frontier(part.at))
-        });
-        let taken = connected(frontier);
-        for part in patch.parts() {
-            self.wave.take(part.at, part.to_tile(taken));
+        for (at, cells) in connected(goal, |at| around.map.frontier(at)) {
+            self.wave.take(at, cells);
         }
     }
 

@@ -275,7 +275,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             let others = self.others.exploring();
             let others = others.flat_map(|other| {
                 let is_lower = other.id < id;
-                other.whereabouts(now).map(move |cell| (cell, is_lower))
+                other.whereabouts().map(move |cell| (cell, is_lower))
             });
             let mine = self
                 .near

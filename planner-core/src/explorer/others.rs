@@ -24,12 +24,9 @@ impl Other {
         now.saturating_sub(self.heard_at) <= 1
     }
 
-    /// Where the robot may be: where it was heard last, and unless that was just
-    /// now, where it was going. (Goals of robots that are heard all the time only
-    /// keep others away from frontiers that they may pass first.)
-    pub(crate) fn whereabouts(&self, now: u32) -> impl Iterator<Item = Cell> + use<> {
-        let goal = self.goal.filter(|_| !self.is_fresh(now));
-        [Some(self.position), goal].into_iter().flatten()
+    /// Where the robot is and where it is going: frontiers beside either are its own.
+    pub(crate) fn whereabouts(&self) -> impl Iterator<Item = Cell> + use<> {
+        [Some(self.position), self.goal].into_iter().flatten()
     }
 }
 

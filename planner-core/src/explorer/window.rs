@@ -68,6 +68,18 @@ impl Window {
         }
         rows
     }
+
+    /// Gives rows back to the tiles, those that have any. Work: 128 bytes.
+    pub(crate) fn split(self, rows: Rows) -> impl Iterator<Item = (TileIndex, u64)> {
+        self.tiles().filter_map(move |(at, row, column)| {
+            let mut bytes = [0; 8];
+            for (byte, row) in bytes.iter_mut().zip(rows.iter().skip(row)) {
+                *byte = (row >> column) as u8;
+            }
+            let cells = u64::from_le_bytes(bytes);
+            (cells != 0).then_some((at, cells))
+        })
+    }
 }
 
 fn get(rows: &Rows, row: usize, column: u32) -> bool {
@@ -107,7 +119,7 @@ const LARGEST_BONUS: i32 = 8;
 const FLOOD: u32 = 448;
 
 /// What a robot's place costs, in the unit of work: a row.
-const OTHER_WORK: u32 = 8;
+const OTHER_WORK: u32 = 7;
 
 /// How far every cell of the window is from the visited ones: 1 to 8, less one, a
 /// bit a plane.

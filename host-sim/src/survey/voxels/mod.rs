@@ -3,5 +3,5 @@
 mod run;
 mod scene;
 
-pub use run::{Scenario, VoxelTrace, look, run};
+pub use run::{Scenario, Simulation, VoxelTrace, look, run};
 pub use scene::Scene;

@@ -61,8 +61,18 @@ pub struct VoxelTrace {
     pub violations: u32,
 }
 
-/// What `eye` sees within `range` voxels.
+/// What `eye` sees within `range` voxels, each with whether it is occupied.
 pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
+    look_for(scene, eye, range, |_, _| true)
+}
+
+/// What `eye` sees of what is wanted.
+fn look_for(
+    scene: &Scene,
+    eye: Voxel,
+    range: u8,
+    is_wanted: impl Fn(Voxel, bool) -> bool,
+) -> Vec<(Voxel, bool)> {
     let reach = i16::from(range);
     let mut seen = Vec::new();
     for z in eye.z - reach..=eye.z + reach {
@@ -71,6 +81,7 @@ pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
                 let voxel = Voxel::new(x, y, z);
                 if let Some(occupied) = scene.is_occupied(voxel)
                     && eye.distance_squared(voxel) <= u32::from(range).pow(2)
+                    && is_wanted(voxel, occupied)
                     && in_sight(eye, voxel, |at| scene.is_occupied(at) != Some(true))
                 {
                     seen.push((voxel, occupied));
@@ -81,45 +92,99 @@ pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
     seen
 }
 
-/// Runs `scenario` in `scene`. Robots start above the ground near the north-west
-/// corner, or wherever there is room first.
+/// Runs `scenario` in `scene`.
 ///
 /// # Errors
-/// There is no room for a robot.
+/// As [`Simulation::new`].
 pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
-    let start = scene
-        .voxels()
-        .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
-        .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
-        .ok_or("there is no room for a robot")?;
-    let config = Config {
-        range: scenario.range,
-    };
-    let mut robots = Vec::new();
-    for _ in 0..scenario.robots {
-        let robot = Robot::new(scene.extent(), scene.levels(), config);
-        robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+    let mut run = Simulation::new(scene, scenario)?;
+    while run.step() {}
+    Ok(run.trace)
+}
+
+/// A run that goes on step by step, for whoever wants to watch.
+pub struct Simulation {
+    scene: Scene,
+    robots: Vec<Box<Robot>>,
+    trace: VoxelTrace,
+    faults: ChaCha8Rng,
+    visible: HashSet<Voxel>,
+    known: HashSet<Voxel>,
+    /// Occupied voxels seen.
+    seen: u32,
+    /// Where each robot stands that tells its map word by word.
+    turns: Vec<(Tile, u8)>,
+    now: u32,
+}
+
+impl Simulation {
+    /// A run before its first step. Robots start above the ground near the north-west
+    /// corner, or wherever there is room first.
+    ///
+    /// # Errors
+    /// There is no room for a robot.
+    pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, String> {
+        let start = scene
+            .voxels()
+            .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
+            .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
+            .ok_or("there is no room for a robot")?;
+        let config = Config {
+            range: scenario.range,
+        };
+        let mut robots = Vec::new();
+        for _ in 0..scenario.robots {
+            let robot = Robot::new(scene.extent(), scene.levels(), config);
+            robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+        }
+        let visible = visible(scene, start, scenario.range);
+        let trace = VoxelTrace {
+            scenario: scenario.clone(),
+            scene: scene.clone(),
+            ways: vec![vec![start]; scenario.robots],
+            work: Vec::new(),
+            found: Vec::new(),
+            visible: visible.len() as u32,
+            seen: Vec::new(),
+            all_stopped: false,
+            violations: 0,
+        };
+        Ok(Self {
+            scene: scene.clone(),
+            robots,
+            trace,
+            faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+            visible,
+            known: HashSet::new(),
+            seen: 0,
+            turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
+            now: 0,
+        })
     }
-    let visible = visible(scene, start, scenario.range);
-    let mut trace = VoxelTrace {
-        scenario: scenario.clone(),
-        scene: scene.clone(),
-        ways: vec![vec![start]; scenario.robots],
-        work: Vec::new(),
-        found: Vec::new(),
-        visible: visible.len() as u32,
-        seen: Vec::new(),
-        all_stopped: false,
-        violations: 0,
-    };
-    let mut faults = ChaCha8Rng::seed_from_u64(scenario.seed);
-    let mut arrives = move || {
-        scenario.loss <= 0.0 || f64::from(faults.next_u32()) / f64::from(u32::MAX) >= scenario.loss
-    };
-    let mut known: HashSet<Voxel> = HashSet::new();
-    let mut seen = 0;
-    let mut turns = vec![(Tile { x: 0, y: 0 }, 0u8); scenario.robots];
-    for now in 0.. {
+
+    /// What has happened so far.
+    pub fn trace(&self) -> &VoxelTrace {
+        &self.trace
+    }
+
+    /// One step of the fleet; false if the run is over.
+    pub fn step(&mut self) -> bool {
+        let Self {
+            scene,
+            robots,
+            trace,
+            faults,
+            visible,
+            known,
+            seen,
+            turns,
+            now,
+        } = self;
+        let scenario = trace.scenario.clone();
+        let mut arrives = || {
+            scenario.loss <= 0.0
+                || f64::from(faults.next_u32()) / f64::from(u32::MAX) >= scenario.loss
+        };
         let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
         for (i, robot) in robots.iter_mut().enumerate() {
             let at = *trace.ways[i].last().expect("it starts somewhere");
@@ -127,8 +192,8 @@ pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
             let mut touched = BTreeSet::new();
             for &(voxel, occupied) in &view {
                 if known.insert(voxel) {
-                    trace.found.push((now, voxel, occupied));
-                    seen += u32::from(visible.contains(&voxel));
+                    trace.found.push((*now, voxel, occupied));
+                    *seen += u32::from(visible.contains(&voxel));
                 }
                 touched.insert((Tile::of(voxel.cell()).expect("inside"), voxel.z as u8));
             }
@@ -151,7 +216,7 @@ pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
                 }
             }
         }
-        trace.seen.push(seen);
+        trace.seen.push(*seen);
         let mut going = false;
         let mut next = Vec::new();
         for i in 0..robots.len() {
@@ -174,26 +239,28 @@ pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
             }
         }
         trace.all_stopped = !going;
-        if !going || now >= scenario.max_ticks {
-            break;
+        if !going || *now >= scenario.max_ticks {
+            return false;
         }
         for (way, to) in trace.ways.iter_mut().zip(next) {
             way.push(to);
         }
+        *now += 1;
+        true
     }
-    Ok(trace)
 }
 
 /// The occupied voxels that can be seen from any place that can be reached from `start`.
 fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
     let mut reached = vec![start];
     let mut is_reached: HashSet<Voxel> = reached.iter().copied().collect();
-    let mut visible = HashSet::new();
+    let mut visible: HashSet<Voxel> = HashSet::new();
     let mut next = 0;
     while let Some(&at) = reached.get(next) {
         next += 1;
-        let occupied = look(scene, at, range).into_iter().filter(|seen| seen.1);
-        visible.extend(occupied.map(|(voxel, _)| voxel));
+        let is_new = |voxel, occupied| occupied && !visible.contains(&voxel);
+        let new = look_for(scene, at, range, is_new);
+        visible.extend(new.into_iter().map(|(voxel, _)| voxel));
         for beside in at.beside() {
             if scene.is_pose(beside) && is_reached.insert(beside) {
                 reached.push(beside);

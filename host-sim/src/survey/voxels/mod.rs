@@ -1,5 +1,6 @@
 //! Fleets of flying robots in boxes of voxels: streets, undersides, rooms.
 
+mod file;
 mod run;
 mod scene;
 

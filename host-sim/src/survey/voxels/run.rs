@@ -1,8 +1,6 @@
 //! A run: sense, share, decide in turn, fly; until every robot has stopped.
 
 use std::collections::{BTreeSet, HashSet};
-use std::fmt::Write as _;
-use std::io;
 
 use planner_core::Point;
 use planner_core::surface::Tile;
@@ -10,7 +8,6 @@ use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use sha2::{Digest, Sha256};
 
 use super::scene::Scene;
 use crate::survey::draw::{Block, oblique};
@@ -22,7 +19,7 @@ type Robot = VoxelSurvey<8, 8, 24>;
 const IN_TURN: usize = 16;
 
 /// What a run is a function of, beside the scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scenario {
     /// Number of robots.
     pub robots: usize,
@@ -251,7 +248,7 @@ impl Simulation {
 }
 
 /// The occupied voxels that can be seen from any place that can be reached from `start`.
-fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
+pub(super) fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
     let mut reached = vec![start];
     let mut is_reached: HashSet<Voxel> = reached.iter().copied().collect();
     let mut visible: HashSet<Voxel> = HashSet::new();
@@ -309,34 +306,5 @@ impl VoxelTrace {
             .collect();
         let highest = f32::from(self.scene.levels());
         oblique(self.scene.extent(), highest, blocks.collect(), &ways)
-    }
-
-    /// Writes `tick,robot,x,y,z,work` line by line: where each robot decided.
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
-        writeln!(to, "tick,robot,x,y,z,work")?;
-        let robots = self.ways.len();
-        for (i, work) in self.work.iter().enumerate() {
-            let (tick, robot) = (i / robots, i % robots);
-            let Voxel { x, y, z } = self.ways[robot][tick];
-            writeln!(to, "{tick},{robot},{x},{y},{z},{work}")?;
-        }
-        Ok(())
-    }
-
-    /// 16 hex digits that differ if any line of the trace does.
-    pub fn digest(&self) -> String {
-        let mut bytes = Vec::new();
-        self.write(&mut bytes).expect("a Vec takes everything");
-        let digest = Sha256::digest(&bytes);
-        digest
-            .iter()
-            .take(8)
-            .fold(String::new(), |mut digits, byte| {
-                write!(digits, "{byte:02x}").expect("a String takes everything");
-                digits
-            })
     }
 }

@@ -354,6 +354,9 @@ fn files(ui: &mut Ui, inbox: &Inbox, path: &mut String) {
     ui.label(RichText::new("or drop a map or a trace here").weak());
 }
 
+/// A kind of place, drawn by a seed.
+type Place = fn(u64) -> TerrainSource;
+
 /// Which place, which seed, how large.
 fn terrain(ui: &mut Ui, setup: &mut SurveySetup) {
     let mut seed = match setup.terrain {
@@ -362,7 +365,7 @@ fn terrain(ui: &mut Ui, setup: &mut SurveySetup) {
         }
         TerrainSource::File(_) => 0,
     };
-    let places: [(fn(u64) -> TerrainSource, _); 3] = [
+    let places: [(Place, _); 3] = [
         (TerrainSource::Gaussian, "hills"),
         (TerrainSource::Urban, "town"),
         (TerrainSource::Town, "town with rooms"),

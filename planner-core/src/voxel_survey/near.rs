@@ -52,9 +52,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             let own = place.at.distance_squared(self.position);
             let is_nearer = |voxel: Voxel| place.at.distance_squared(voxel) < own;
             let is_rivals = self
-                .rivals
-                .iter()
-                .any(|&(_, at, goal)| is_nearer(at) || is_nearer(goal));
+                .rivals()
+                .any(|rival| is_nearer(rival.position) || rival.goal.is_some_and(is_nearer));
             let share = if is_rivals { 0.25 } else { 1.0 };
             let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
             if best.is_none_or(|(most, _)| score > most) {

@@ -10,6 +10,11 @@ const EXTENT: Extent = Extent::new(11, 10);
 const LEVELS: u8 = 7;
 const RANGE: u8 = 4;
 
+const CONFIG: Config = Config {
+    range: RANGE,
+    link: LinkConfig::new(),
+};
+
 type Robot = VoxelSurvey<2, 2, 7>;
 
 fn all() -> impl Iterator<Item = Voxel> {
@@ -77,7 +82,7 @@ proptest! {
         for beside in start.beside() {
             walls.remove(&beside);
         }
-        let mut robot = Robot::new(EXTENT, LEVELS, Config { range: RANGE }).unwrap();
+        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
         let mut at = start;
         let mut steps = 0;
         loop {

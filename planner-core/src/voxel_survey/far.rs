@@ -1,14 +1,8 @@
 //! The nearest pose far away that is not done: a wave over all poses, in slices.
 
-use super::{VoxelSurvey, WAY};
+use super::{SLICE, VoxelSurvey, WAY};
 use crate::surface::{Tile, neighbours_of};
 use crate::volume::{Layer, Volume, Voxel, around};
-
-/// Words that the wave washes in a step.
-const SLICE: u32 = 1024;
-
-/// Poses whose view is looked at in a step.
-const VIEWS: u32 = 8;
 
 /// What a step of the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -113,8 +107,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     fn spread(&mut self, known: u32) -> Found {
-        let mut views = 0;
-        for _ in 0..SLICE {
+        while self.work < SLICE {
             self.work = self.work.saturating_add(1);
             self.far.wash(&self.volume);
             let (tile, z) = self.far.cursor;
@@ -126,13 +119,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             let open = wet & !self.done.word(tile, z);
             if open != 0 {
                 // The cursor stays until all of them are done.
-                if views == VIEWS {
-                    return Found::Searching;
-                }
-                views += 1;
                 let cell = tile.cell(open.trailing_zeros());
                 let pose = Voxel::new(cell.x, cell.y, i16::from(z));
-                if self.gain(pose) > 0 {
+                if self.gain(pose, 1) > 0 {
                     self.goal = pose;
                     self.way.clear();
                     self.far.stage = Stage::Back(pose);

@@ -45,6 +45,9 @@ use news::News;
 /// Steps of a way that are remembered.
 const WAY: usize = 64;
 
+/// Words and rays after which a step begins no further view.
+const SLICE: u32 = 4096;
+
 /// Largest sensor range in voxels.
 pub const MAX_RANGE: u8 = 12;
 

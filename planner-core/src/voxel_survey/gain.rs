@@ -4,6 +4,9 @@ use super::VoxelSurvey;
 use crate::surface::{Bits, Tile};
 use crate::volume::{Content, Voxel, in_sight};
 
+/// Words that a ray looks at, about.
+pub(super) const RAY: u32 = 16;
+
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Number of unknown voxels in sight of `pose` where unknown voxels do not block
     /// sight, at most `enough`. At 0 the pose is done.
@@ -42,7 +45,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                         if pose.distance_squared(voxel) > range {
                             continue;
                         }
-                        self.work = self.work.saturating_add(1);
+                        self.work = self.work.saturating_add(RAY);
                         let is_clear = |at| self.volume.content(at) != Content::Occupied;
                         gain += u32::from(in_sight(pose, voxel, is_clear));
                         if gain >= enough {

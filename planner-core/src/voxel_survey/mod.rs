@@ -45,8 +45,8 @@ use news::News;
 /// Steps of a way that are remembered.
 const WAY: usize = 64;
 
-/// Words and rays after which a step begins no further view.
-const SLICE: u32 = 4096;
+/// Words looked at after which a step begins no further view.
+const SLICE: u32 = 65_536;
 
 /// Largest sensor range in voxels.
 pub const MAX_RANGE: u8 = 12;
@@ -99,6 +99,10 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     peers: Peers<Status>,
     sender: Sender,
     news: News<TW, TH, L>,
+    /// Where the look at all poses in turn stands, and those of its word that were
+    /// looked at.
+    turn: (Tile, u8),
+    passed: u64,
     /// Known voxels when nothing was left.
     stopped_at: Option<u32>,
     work: u32,
@@ -126,6 +130,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             peers: Peers::new(),
             sender: Sender::new(config.link, grid, RobotId(id)),
             news: News::new(),
+            turn: (Tile { x: 0, y: 0 }, 0),
+            passed: 0,
             stopped_at: None,
             work: 0,
         })
@@ -141,7 +147,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.position
     }
 
-    /// Voxels, words and rays looked at by the last [`tick`](Self::tick).
+    /// Words looked at by the last [`tick`](Self::tick), 16 for a ray.
     pub const fn work(&self) -> u32 {
         self.work
     }
@@ -179,6 +185,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn rivals(&self) -> impl Iterator<Item = &Status> {
         let statuses = self.peers.iter().map(|peer: &Peer<Status>| &peer.status);
         statuses.filter(|status| !status.stopped)
+    }
+
+    /// Whether a rival, or where it goes, is nearer to `pose`.
+    fn is_a_rivals(&self, pose: Voxel) -> bool {
+        let own = pose.distance_squared(self.position);
+        let is_nearer = |voxel: Voxel| pose.distance_squared(voxel) < own;
+        self.rivals()
+            .any(|rival| is_nearer(rival.position) || rival.goal.is_some_and(is_nearer))
     }
 
     /// Writes the next frame for the radio and returns its length, or `None` while the
@@ -235,8 +249,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// Decides. Call it once per step.
     ///
-    /// Cost: 512 voxels near by and the views from 24 of them, or 1024 words of the
-    /// search for a pose far away and the views from 8; a view is at most one ray for
+    /// Cost: 512 poses near by and the views from 24 of them; beside these, views and
+    /// searches begin until 65,536 words were looked at. A view is at most one ray for
     /// each voxel within range.
     pub fn tick(&mut self) -> Action {
         self.work = 0;
@@ -247,6 +261,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.stopped_at = None;
         if let Some(action) = self.follow() {
+            self.look_ahead();
             return action;
         }
         let action = if self.far.is_idle() {
@@ -264,6 +279,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 self.stopped_at = Some(self.volume.known_voxels());
                 Action::Stop
             }
+        }
+    }
+
+    /// Spends what a step on the way leaves over on poses anywhere that show nothing any
+    /// more: searches then pass over them.
+    fn look_ahead(&mut self) {
+        while self.work < SLICE {
+            self.work = self.work.saturating_add(1);
+            let (tile, z) = self.turn;
+            let open = self.volume.poses(tile, z) & !self.done.word(tile, z) & !self.passed;
+            if open == 0 {
+                self.passed = 0;
+                self.turn = self.volume.after(tile, z);
+                continue;
+            }
+            let bit = open.trailing_zeros();
+            self.passed |= 1 << bit;
+            let cell = tile.cell(bit);
+            self.gain(Voxel::new(cell.x, cell.y, z.into()), 1);
         }
     }
 

@@ -17,6 +17,9 @@ const ENOUGH: u32 = 64;
 /// Half of the side of the window that they lie in.
 const WINDOW: i16 = 16;
 
+/// What a view is worth to which a rival is nearer.
+const RIVALS_SHARE: f32 = 0.25;
+
 /// Steps that a flight costs beside its length.
 const START: u32 = 2;
 
@@ -83,12 +86,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             if gain == 0 {
                 continue;
             }
-            let own = place.at.distance_squared(self.position);
-            let is_nearer = |voxel: Voxel| place.at.distance_squared(voxel) < own;
-            let is_rivals = self
-                .rivals()
-                .any(|rival| is_nearer(rival.position) || rival.goal.is_some_and(is_nearer));
-            let share = if is_rivals { 0.25 } else { 1.0 };
+            let share = if self.is_a_rivals(place.at) {
+                RIVALS_SHARE
+            } else {
+                1.0
+            };
             let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
             if best.is_none_or(|(most, _)| score > most) {
                 best = Some((score, number));

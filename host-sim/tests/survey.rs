@@ -204,6 +204,25 @@ fn frames_carry_voxels() {
     assert!(radio * 10 <= ideal * 12, "{radio} {ideal}");
 }
 
+/// Robots share out the search for the last voxels too: three take less than half as
+/// long as one.
+#[test]
+fn voxels_are_shared_out() {
+    let ticks = |robots| {
+        let ticks = (1..4).map(|seed| {
+            let scenario = voxels::Scenario {
+                medium: MediumKind::Radio,
+                ..voxels::Scenario::new(robots, seed)
+            };
+            let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+            trace.ticks_to(1.0).unwrap()
+        });
+        ticks.sum::<u32>()
+    };
+    let (alone, together) = (ticks(1), ticks(3));
+    assert!(2 * together < alone, "{together} {alone}");
+}
+
 /// Two robots map a town of heights, and OctoMap's own tool reads what they mapped.
 #[test]
 fn a_town_is_mapped_as_octomap_reads_it() {

@@ -19,9 +19,9 @@ const LEAST: f32 = 0.4;
 /// trusted: something ahead cannot be seen.
 const LEAST_GAIN: f32 = 0.11;
 
-/// With a rival nearer than this, in ranges, there are no local steps: they keep robots
-/// together that frontiers, shared out, would lead apart.
-const APART: f32 = 4.0;
+/// As long as it gains, a robot with a rival nearer than this, in ranges, makes no local
+/// steps: their views overlap, and shared out frontiers lead them apart.
+const APART: f32 = 2.0;
 
 /// Steps that a probe looks ahead.
 const LOOKAHEAD: u8 = 4;
@@ -53,7 +53,7 @@ const ROWS: usize = HISTORY + HEADINGS as usize;
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// The best step into a swath of unknown surface, if there is one and no rival is
-    /// about.
+    /// about it too.
     ///
     /// Cost: a [`Vicinity`], 64 rows for each rival, 8 probes of 4 discs; then 48
     /// candidates, each of them 4 discs or 20 terms of the cubic.
@@ -61,7 +61,8 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     pub(super) fn best_swath(&mut self, gain: f32) -> Option<Point> {
         let step = self.config.limits.step;
         let trusted = gain >= LEAST_GAIN * 2.0 * self.config.limits.range * step;
-        if core::mem::take(&mut self.local) && !trusted || self.is_among_rivals() {
+        let in_company = gain > 0.0 && self.is_among_rivals();
+        if core::mem::take(&mut self.local) && !trusted || in_company {
             return None;
         }
         let vicinity = self.own_vicinity();

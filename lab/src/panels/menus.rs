@@ -250,14 +250,12 @@ impl App {
             number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
         });
         title(ui, "Radio");
-        if !setup.is_of_voxels() {
-            choice(
-                ui,
-                "medium",
-                &mut setup.medium,
-                MediumKind::value_variants(),
-            );
-        }
+        choice(
+            ui,
+            "medium",
+            &mut setup.medium,
+            MediumKind::value_variants(),
+        );
         ui.add(
             Slider::new(&mut setup.loss, 0.0..=1.0)
                 .max_decimals(2)

@@ -78,11 +78,11 @@ impl SurveySetup {
     /// The scenario in a town of voxels.
     pub fn voxel_scenario(&self) -> voxels::Scenario {
         voxels::Scenario {
-            robots: self.robots.into(),
             range: self.range,
+            medium: self.medium,
             loss: self.loss,
-            seed: self.seed,
             max_ticks: MAX_TICKS,
+            ..voxels::Scenario::new(self.robots.into(), self.seed)
         }
     }
 
@@ -120,6 +120,7 @@ impl SurveySetup {
             size,
             robots: scenario.robots.min(255) as u8,
             range: scenario.range,
+            medium: scenario.medium,
             loss: scenario.loss,
             seed: scenario.seed,
             ..Self::default()
@@ -156,8 +157,8 @@ impl SurveySetup {
         if !self.is_of_voxels() {
             settings.push(("min-altitude", self.min_altitude.to_string()));
             settings.push(("ceiling", self.ceiling.to_string()));
-            settings.push(("medium", self.medium.to_string()));
         }
+        settings.push(("medium", self.medium.to_string()));
         settings.push(("loss", self.loss.to_string()));
         settings.push(("seed", self.seed.to_string()));
         settings
@@ -298,6 +299,7 @@ pub(super) mod tests {
             size: 24,
             robots: 3,
             range: 6,
+            medium: MediumKind::Ideal,
             loss: 0.25,
             seed: 7,
             ..SurveySetup::default()
@@ -345,7 +347,7 @@ pub(super) mod tests {
         assert_eq!(
             town().command(),
             "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
-             --loss 0.25 --seed 7"
+             --medium ideal --loss 0.25 --seed 7"
         );
     }
 }

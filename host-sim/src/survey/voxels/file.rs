@@ -19,6 +19,7 @@ use sha2::{Digest, Sha256};
 
 use super::run::{Scenario, VoxelTrace, look, visible};
 use super::scene::{LARGEST, Scene};
+use crate::fleet::Sent;
 use crate::trace::{Kind, TraceError};
 
 const KIND: Kind = Kind {
@@ -112,6 +113,8 @@ impl VoxelTrace {
         let mut trace = Self {
             ways: vec![Vec::new(); robots],
             work: records.iter().map(|record| record.work).collect(),
+            // What was sent is not in the file.
+            sent: vec![Sent::default(); records.len()],
             found: Vec::new(),
             visible: 0,
             seen: Vec::new(),
@@ -267,11 +270,10 @@ mod tests {
 
     fn trace(max_ticks: u32) -> VoxelTrace {
         let scenario = Scenario {
-            robots: 2,
             range: 6,
             loss: 0.3,
-            seed: 4,
             max_ticks,
+            ..Scenario::new(2, 4)
         };
         run(&Scene::town(1, 28), &scenario).unwrap()
     }

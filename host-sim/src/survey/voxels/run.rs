@@ -3,6 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use planner_core::Point;
+use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
@@ -10,6 +11,9 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::scene::Scene;
+use crate::fleet::Sent;
+use crate::medium::MediumKind;
+use crate::survey::DEFAULT_BYTE_BUDGET;
 use crate::survey::draw::{Block, oblique};
 use crate::survey::octree::OcTree;
 
@@ -25,12 +29,31 @@ pub struct Scenario {
     pub robots: usize,
     /// Sensor range in voxels.
     pub range: u8,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
+    /// Bytes that a robot may send by radio in a step on average.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
     /// Seed of the losses.
     pub seed: u64,
     /// Steps after which the run is given up.
     pub max_ticks: u32,
+}
+
+impl Scenario {
+    /// Range 8, no losses, and robots that share everything at once.
+    pub fn new(robots: usize, seed: u64) -> Self {
+        Self {
+            robots,
+            range: 8,
+            medium: MediumKind::Ideal,
+            byte_budget: DEFAULT_BYTE_BUDGET,
+            loss: 0.0,
+            seed,
+            max_ticks: 20_000,
+        }
+    }
 }
 
 /// A whole run.
@@ -44,6 +67,8 @@ pub struct VoxelTrace {
     pub ways: Vec<Vec<Voxel>>,
     /// Work of each decision.
     pub work: Vec<u32>,
+    /// What each robot sent in the step of each decision.
+    pub sent: Vec<Sent>,
     /// Voxels in the order in which they were seen, each with the step and with whether
     /// it is occupied.
     pub found: Vec<(u32, Voxel, bool)>,
@@ -104,13 +129,11 @@ pub struct Simulation {
     scene: Scene,
     robots: Vec<Box<Robot>>,
     trace: VoxelTrace,
-    faults: ChaCha8Rng,
+    medium: Medium,
     visible: HashSet<Voxel>,
     known: HashSet<Voxel>,
     /// Occupied voxels seen.
     seen: u32,
-    /// Where each robot stands that tells its map word by word.
-    turns: Vec<(Tile, u8)>,
     now: u32,
 }
 
@@ -128,10 +151,14 @@ impl Simulation {
             .ok_or("there is no room for a robot")?;
         let config = Config {
             range: scenario.range,
+            link: LinkConfig {
+                bytes_per_tick: scenario.byte_budget,
+                ..LinkConfig::new()
+            },
         };
         let mut robots = Vec::new();
-        for _ in 0..scenario.robots {
-            let robot = Robot::new(scene.extent(), scene.levels(), config);
+        for id in 0..scenario.robots {
+            let robot = Robot::new(scene.extent(), scene.levels(), config, id as u8);
             robots.push(Box::new(robot.map_err(|error| error.to_string())?));
         }
         let visible = visible(scene, start, scenario.range);
@@ -140,6 +167,7 @@ impl Simulation {
             scene: scene.clone(),
             ways: vec![vec![start]; scenario.robots],
             work: Vec::new(),
+            sent: Vec::new(),
             found: Vec::new(),
             visible: visible.len() as u32,
             seen: Vec::new(),
@@ -150,11 +178,14 @@ impl Simulation {
             scene: scene.clone(),
             robots,
             trace,
-            faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+            medium: Medium {
+                loss: scenario.loss,
+                faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+                turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
+            },
             visible,
             known: HashSet::new(),
             seen: 0,
-            turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
             now: 0,
         })
     }
@@ -170,53 +201,41 @@ impl Simulation {
             scene,
             robots,
             trace,
-            faults,
+            medium,
             visible,
             known,
             seen,
-            turns,
             now,
         } = self;
         let scenario = trace.scenario.clone();
-        let mut arrives = || {
-            scenario.loss <= 0.0
-                || f64::from(faults.next_u32()) / f64::from(u32::MAX) >= scenario.loss
-        };
-        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
-        for (i, robot) in robots.iter_mut().enumerate() {
-            let at = *trace.ways[i].last().expect("it starts somewhere");
+        let mut views = Vec::new();
+        for (robot, way) in robots.iter_mut().zip(&trace.ways) {
+            let at = *way.last().expect("it starts somewhere");
             let view = look(scene, at, scenario.range);
-            let mut touched = BTreeSet::new();
             for &(voxel, occupied) in &view {
                 if known.insert(voxel) {
                     trace.found.push((*now, voxel, occupied));
                     *seen += u32::from(visible.contains(&voxel));
                 }
-                touched.insert((Tile::of(voxel.cell()).expect("inside"), voxel.z as u8));
             }
             robot.observe(at, &view);
-            for _ in 0..IN_TURN {
-                touched.insert(turns[i]);
-                turns[i] = robot.volume().after(turns[i].0, turns[i].1);
-            }
-            let patches = touched
-                .into_iter()
-                .map(|(tile, z)| robot.volume().patch(tile, z));
-            messages.push(patches.collect());
+            views.push(view);
         }
-        for (from, message) in messages.iter().enumerate() {
-            for (to, robot) in robots.iter_mut().enumerate() {
-                if to != from && arrives() {
-                    for patch in message {
-                        robot.merge(patch);
-                    }
+        let mut sent = vec![Sent::default(); robots.len()];
+        match scenario.medium {
+            MediumKind::Ideal => medium.share_maps(robots, &views),
+            MediumKind::Radio => {
+                let frames = usize::from(scenario.byte_budget) / MAX_LEN;
+                // One is left for after the flight.
+                for (i, sent) in sent.iter_mut().enumerate() {
+                    medium.transmit(robots, i, frames.saturating_sub(1).max(1), sent);
                 }
             }
         }
         trace.seen.push(*seen);
         let mut going = false;
         let mut next = Vec::new();
-        for i in 0..robots.len() {
+        for (i, sent) in sent.iter_mut().enumerate() {
             let at = *trace.ways[i].last().expect("as above");
             let action = robots[i].tick();
             trace.work.push(robots[i].work());
@@ -228,13 +247,12 @@ impl Simulation {
             let is_allowed = scene.is_pose(to) && at.distance_squared(to) <= 1;
             trace.violations += u32::from(!is_allowed);
             next.push(to);
-            let goal = robots[i].goal();
-            for (other, robot) in robots.iter_mut().enumerate() {
-                if other != i && arrives() {
-                    robot.hear(i as u8, to, goal);
-                }
+            match scenario.medium {
+                MediumKind::Ideal => medium.share_status(robots, i),
+                MediumKind::Radio => medium.transmit(robots, i, 1, sent),
             }
         }
+        trace.sent.append(&mut sent);
         trace.all_stopped = !going;
         if !going || *now >= scenario.max_ticks {
             return false;
@@ -244,6 +262,78 @@ impl Simulation {
         }
         *now += 1;
         true
+    }
+}
+
+/// What carries what robots tell each other.
+struct Medium {
+    loss: f64,
+    faults: ChaCha8Rng,
+    /// Where each robot stands that tells its map word by word.
+    turns: Vec<(Tile, u8)>,
+}
+
+impl Medium {
+    fn arrives(&mut self) -> bool {
+        self.loss <= 0.0 || f64::from(self.faults.next_u32()) / f64::from(u32::MAX) >= self.loss
+    }
+
+    /// Everything that each robot sees to everybody, however much it is, and a few words
+    /// of its map.
+    fn share_maps(&mut self, robots: &mut [Box<Robot>], views: &[Vec<(Voxel, bool)>]) {
+        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
+        for ((robot, view), turn) in robots.iter().zip(views).zip(&mut self.turns) {
+            let tile = |voxel: Voxel| Tile::of(voxel.cell()).expect("inside");
+            let mut touched: BTreeSet<(Tile, u8)> = view
+                .iter()
+                .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
+                .collect();
+            for _ in 0..IN_TURN {
+                touched.insert(*turn);
+                *turn = robot.volume().after(turn.0, turn.1);
+            }
+            let patches = touched
+                .into_iter()
+                .map(|(tile, z)| robot.volume().patch(tile, z));
+            messages.push(patches.collect());
+        }
+        for (from, message) in messages.iter().enumerate() {
+            for (to, robot) in robots.iter_mut().enumerate() {
+                if to != from && self.arrives() {
+                    for patch in message {
+                        robot.merge(patch);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where robot `from` is and goes, to everybody.
+    fn share_status(&mut self, robots: &mut [Box<Robot>], from: usize) {
+        let status = robots[from].status();
+        for (to, robot) in robots.iter_mut().enumerate() {
+            if to != from && self.arrives() {
+                robot.hear(from as u8, status);
+            }
+        }
+    }
+
+    /// Robot `from` sends as many frames as its budget allows, at most `most`.
+    fn transmit(&mut self, robots: &mut [Box<Robot>], from: usize, most: usize, sent: &mut Sent) {
+        let mut frame = [0; MAX_LEN];
+        for _ in 0..most {
+            let Some(length) = robots[from].transmit(&mut frame) else {
+                break;
+            };
+            sent.frames += 1;
+            sent.bytes += length as u32;
+            for (to, robot) in robots.iter_mut().enumerate() {
+                if to != from && self.arrives() {
+                    let heard = robot.receive(&frame[..length]);
+                    heard.expect("robots understand each other");
+                }
+            }
+        }
     }
 }
 

@@ -39,9 +39,9 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     cursor: (Tile, u8),
     /// Whether anything has become wet in it.
     grows: bool,
-    /// Poses of the word at the cursor that show something and lie nearer to a rival.
+    /// Poses of the word at the cursor that are left to rivals.
     passed: u64,
-    /// The first of all of those.
+    /// The first pose of all that shows something and is left to a rival.
     spare: Option<Voxel>,
 }
 

@@ -15,7 +15,9 @@
 //! neighbours are in sight of q if the range is at least 2: straight through p, or over
 //! the edge between p and another neighbour of q, which is free. So p is a pose, and by
 //! induction all of P are. Each look or check makes one more pose done, and there are
-//! finitely many, so the robot stops.
+//! finitely many, so the robot stops. What it leaves to rivals changes only which pose
+//! comes first: a search ends without a pose only if none of those that it reached shows
+//! anything, whoever is nearer.
 //!
 //! Robots are smaller than a voxel: several may share one. What others tell only saves
 //! looks; nothing waits for it.

@@ -53,13 +53,12 @@ fn survey_of(scenario: &str) -> String {
     let (terrain, side): (TerrainSource, u16) = (terrain.parse().unwrap(), side.parse().unwrap());
     let (robots, loss): (usize, f64) = (robots.parse().unwrap(), loss.parse().unwrap());
     if let Some(scene) = terrain.scene(side) {
-        assert_eq!([planner, medium, kill], ["voxel-survey", "-", "-"]);
+        assert_eq!([planner, kill], ["voxel-survey", "-"]);
         let scenario = voxels::Scenario {
-            robots,
             range: 6,
+            medium: MediumKind::from_str(medium, false).unwrap(),
             loss,
-            seed: SEED,
-            max_ticks: 20_000,
+            ..voxels::Scenario::new(robots, SEED)
         };
         let trace = voxels::run(&scene, &scenario).unwrap();
         return format!("{} {}", trace.seen.len() - 1, trace.digest());

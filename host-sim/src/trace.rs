@@ -19,7 +19,7 @@ use std::fmt::Write;
 use planner_core::{Cell, Direction, Stop};
 use sha2::{Digest, Sha256};
 
-pub use file::TraceError;
+pub use file::{Kind, TraceError};
 
 use crate::fleet::{Deed, Robot, Sent, Step};
 use crate::run::Scenario;
@@ -140,23 +140,27 @@ impl Trace {
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        let mut sha = Sha256::new();
-        for record in &self.records {
-            sha.update(record.bytes());
-        }
-        sha.finalize()
-            .iter()
-            .take(8)
-            .fold(String::new(), |mut digits, byte| {
-                write!(digits, "{byte:02x}").expect("a String takes everything");
-                digits
-            })
+        digest(&self.records)
     }
 
     /// Number of ticks that were run.
     pub fn ticks(&self) -> u32 {
         self.records.last().map_or(0, |record| record.tick + 1)
     }
+}
+
+fn digest(records: &[Record]) -> String {
+    let mut sha = Sha256::new();
+    for record in records {
+        sha.update(record.bytes());
+    }
+    sha.finalize()
+        .iter()
+        .take(8)
+        .fold(String::new(), |mut digits, byte| {
+            write!(digits, "{byte:02x}").expect("a String takes everything");
+            digits
+        })
 }
 
 #[cfg(test)]

@@ -159,13 +159,12 @@ fn octomap_reads_any_tree() {
 /// it.
 #[test]
 fn a_town_of_voxels_is_mapped_as_octomap_reads_it() {
-    for (seed, loss) in [(1, 0.0), (2, 0.5)] {
+    use MediumKind::{Ideal, Radio};
+    for (seed, medium, loss) in [(1, Ideal, 0.0), (2, Ideal, 0.5), (2, Radio, 0.5)] {
         let scenario = voxels::Scenario {
-            robots: 2,
-            range: 8,
+            medium,
             loss,
-            seed,
-            max_ticks: 20_000,
+            ..voxels::Scenario::new(2, seed)
         };
         let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
         assert!(trace.complete() && trace.all_stopped);
@@ -175,6 +174,53 @@ fn a_town_of_voxels_is_mapped_as_octomap_reads_it() {
         );
         check_with_octomap(&trace.octree(u32::MAX), "town.bt");
     }
+}
+
+/// By radio robots come to nearly as good an exploration of a town of voxels, and never
+/// send more than they may.
+#[test]
+fn frames_carry_voxels() {
+    let ticks = |medium| {
+        let ticks = (1..4).map(|seed| {
+            let scenario = voxels::Scenario {
+                medium,
+                ..voxels::Scenario::new(3, seed)
+            };
+            let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+            assert!(trace.complete() && trace.all_stopped);
+            for sent in &trace.sent {
+                assert!(sent.bytes <= u32::from(scenario.byte_budget));
+                assert!(sent.bytes <= 55 * sent.frames);
+            }
+            assert_eq!(
+                trace.sent.iter().any(|sent| sent.bytes > 0),
+                medium == MediumKind::Radio
+            );
+            trace.ticks_to(1.0).unwrap()
+        });
+        ticks.sum::<u32>()
+    };
+    let (ideal, radio) = (ticks(MediumKind::Ideal), ticks(MediumKind::Radio));
+    assert!(radio * 10 <= ideal * 12, "{radio} {ideal}");
+}
+
+/// Robots share out the search for the last voxels too: three take less than half as
+/// long as one.
+#[test]
+fn voxels_are_shared_out() {
+    let ticks = |robots| {
+        let ticks = (1..4).map(|seed| {
+            let scenario = voxels::Scenario {
+                medium: MediumKind::Radio,
+                ..voxels::Scenario::new(robots, seed)
+            };
+            let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+            trace.ticks_to(1.0).unwrap()
+        });
+        ticks.sum::<u32>()
+    };
+    let (alone, together) = (ticks(1), ticks(3));
+    assert!(2 * together < alone, "{together} {alone}");
 }
 
 /// Two robots map a town of heights, and OctoMap's own tool reads what they mapped.
@@ -201,8 +247,9 @@ fn work_is_bounded() {
             let mean = work().map(u64::from).sum::<u64>() / work().count() as u64;
             (mean, work().max().unwrap())
         };
-        let (small, large, many) = (work(60, 8), work(200, 8), work(60, 16));
-        for (mean, max) in [large, many] {
+        // Alone a robot makes most use of the costliest rule.
+        let small = work(60, 1);
+        for (mean, max) in [work(200, 1), work(200, 8), work(60, 16)] {
             // Which rules a robot uses most differs from map to map.
             assert!(mean <= 2 * small.0, "{planner}: {mean} {small:?}");
             assert!(2 * max <= 3 * small.1 + 200, "{planner}: {max} {small:?}");
@@ -267,6 +314,39 @@ fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
         }
         if seen.len() == before {
             return seen;
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    /// Whatever share of the frames is lost, all of them too: everything that can be seen
+    /// of a scene of voxels is seen, and every robot stops.
+    #[test]
+    fn losses_leave_no_voxel_unseen(
+        slabs in prop::collection::vec(((0i16..14, 0i16..13, 0i16..8), (1i16..7, 1i16..7, 1i16..4)), 0..6),
+        robots in 1usize..5,
+        loss in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0],
+        byte_budget in prop::sample::select(&[0u16, 20, 55, 275][..]),
+        seed in 0u64..1000,
+    ) {
+        let scene = voxels::Scene::from_fn("slabs", Extent::new(14, 13), 8, |v| {
+            slabs.iter().any(|&((x, y, z), (wide, deep, high))| {
+                (x..x + wide).contains(&v.x) && (y..y + deep).contains(&v.y) && (z..z + high).contains(&v.z)
+            })
+        });
+        let scenario = voxels::Scenario {
+            range: 4,
+            medium: MediumKind::Radio,
+            byte_budget,
+            loss,
+            ..voxels::Scenario::new(robots, seed)
+        };
+        // Without room for a robot there is no run.
+        if let Ok(trace) = voxels::run(&scene, &scenario) {
+            prop_assert!(trace.complete(), "{} of {}", trace.seen.last().unwrap(), trace.visible);
+            prop_assert!(trace.all_stopped);
         }
     }
 }

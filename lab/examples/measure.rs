@@ -1,5 +1,6 @@
 //! How many ticks a second can be shown, without a window: 100 robots on 256×256 cells,
-//! or the scenario of an address, and so many ticks of it at most.
+//! or the scenario of an address; so many ticks of it at most; and with one of its robots
+//! selected.
 //!
 //! ```sh
 //! cargo run --release -p lab --no-default-features --example measure
@@ -18,8 +19,10 @@ const CROWD: &str = "map=generate:rooms:256x256:1&robots=100&start=random";
 
 fn main() {
     let address = std::env::args().nth(1).unwrap_or_else(|| CROWD.into());
-    let app = App::from_address(&address);
-    let most = std::env::args().nth(2).and_then(|most| most.parse().ok());
+    let mut app = App::from_address(&address);
+    let number = |place| std::env::args().nth(place)?.parse().ok();
+    let most = number(2);
+    app.selected = number(3);
     println!("{}", measure(app, most.unwrap_or(usize::MAX)));
 }
 

@@ -7,7 +7,8 @@ use host_sim::world::Starts;
 use planner_core::{Cell, RobotId};
 
 use crate::ground::{ALL_TICKS, Layers};
-use crate::maps::{self, Map};
+use crate::maps;
+use crate::opened::Opened;
 use crate::platform::{Inbox, Stopwatch};
 use crate::setup::Setup;
 use crate::survey::{SurveyScene, SurveySetup};
@@ -152,13 +153,15 @@ impl App {
     /// Starts a survey.
     pub fn fly(&mut self, setup: SurveySetup) {
         match SurveyScene::new(setup) {
-            Ok(scene) => {
-                self.survey = Some(scene);
-                self.playing = true;
-                self.notice = None;
-            }
+            Ok(scene) => self.watch(scene),
             Err(error) => self.fail(error),
         }
+    }
+
+    fn watch(&mut self, scene: SurveyScene) {
+        self.survey = Some(scene);
+        self.playing = true;
+        self.notice = None;
     }
 
     /// Starts over with this setup; one that cannot be run changes nothing but the
@@ -214,15 +217,8 @@ impl App {
 
     /// Opens a map or a trace.
     pub fn open(&mut self, name: &str, bytes: &[u8]) {
-        if bytes.starts_with(b"{") {
-            match Trace::read(bytes) {
-                Ok(trace) => self.replay(trace),
-                Err(error) => self.fail(format!("{name}: {error}")),
-            }
-            return;
-        }
-        match Map::from_bytes(name, bytes) {
-            Ok(map) => {
+        match Opened::read(name, bytes) {
+            Ok(Opened::Map(map)) => {
                 let starts = map
                     .world()
                     .map(|world| world.starts().to_vec())
@@ -235,6 +231,9 @@ impl App {
                     ..self.setup.clone()
                 });
             }
+            Ok(Opened::Exploration(trace)) => self.replay(*trace),
+            Ok(Opened::Survey(trace)) => self.watch(SurveyScene::replay(*trace)),
+            Ok(Opened::Voxels(trace)) => self.watch(SurveyScene::replay_voxels(*trace)),
             Err(error) => self.fail(error),
         }
     }
@@ -484,7 +483,7 @@ impl App {
                 },
                 digest: survey.digest().unwrap_or_default().into(),
                 ticks: survey.steps() as u32,
-                map: survey.trace().terrain.name().into(),
+                map: survey.name().into(),
                 error,
             };
         }
@@ -597,11 +596,73 @@ mod tests {
             ("picture.png", b"no picture"),
             ("map.doc", b"..."),
             ("run.csv", b"{\"format\":1}"),
+            ("trace.csv", b"tick,robot,x,y,z,work\n0,0,1,1,1,7\n"),
         ] {
             app.open(name, bytes);
             let error = app.report().error;
             assert!(error.starts_with(name), "{error}");
             assert_eq!(app.setup, before);
+        }
+    }
+
+    #[test]
+    fn a_trace_that_cannot_be_read_says_what_to_do() {
+        let mut app = app();
+        app.open(
+            "run.csv",
+            b"{\"format\":\"host-sim trace\",\"version\":1,\"digest\":\"\",\"records\":0}",
+        );
+        let error = app.report().error;
+        assert!(
+            error.contains("version 1") && error.contains("run the"),
+            "{error}"
+        );
+        app.open(
+            "run.csv",
+            b"{\"format\":\"logbook\",\"version\":1,\"digest\":\"\",\"records\":0}",
+        );
+        let error = app.report().error;
+        assert!(
+            error.contains("logbook") && error.contains("open a trace"),
+            "{error}"
+        );
+        app.open("coverage.csv", b"tick,seen_cells\n");
+        assert!(app.report().error.contains("open the trace.csv"));
+        app.open(
+            "summary.json",
+            b"{\n  \"complete\": true,\n  \"trace_digest\": \"00\"\n}\n",
+        );
+        assert!(app.report().error.contains("open the trace.csv"));
+    }
+
+    #[test]
+    fn a_saved_survey_is_replayed_and_flown_again() {
+        for address in [
+            "terrain=urban:3&size=24&robots=2",
+            "terrain=town:2&size=24&range=6",
+        ] {
+            let mut app = App::from_address(address);
+            finish(&mut app);
+            let digest = app.report().digest;
+            let bytes = app.survey.as_ref().unwrap().file().unwrap();
+            let mut other = App::new(Setup::default());
+            other.open("trace.csv", &bytes);
+            let replayed = other.report();
+            assert_eq!((&*replayed.digest, replayed.state), (&*digest, "complete"));
+            assert_eq!(other.address(), address);
+            assert!(other.playing && other.shown_tick() == 0);
+            finish(&mut other);
+            assert_eq!(other.shown_tick(), other.last_tick());
+            assert_eq!(other.last_tick(), app.last_tick());
+            // A place that is only in the trace is shown, and cannot be flown anew.
+            let elsewhere = String::from_utf8(bytes).unwrap();
+            let elsewhere = elsewhere.replacen("\"name\":\"", "\"name\":\"old-", 1);
+            other.open("trace.csv", elsewhere.as_bytes());
+            let survey = other.survey.as_ref().unwrap();
+            assert!(survey.is_replay() && !survey.is_repeatable());
+            other.fly(survey.setup.clone());
+            assert!(other.report().error.contains("only in the trace"));
+            assert!(other.survey.as_ref().unwrap().is_replay());
         }
     }
 

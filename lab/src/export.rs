@@ -1,7 +1,6 @@
 //! What is shown, as files.
 
 use host_sim::draw;
-use host_sim::survey::{self, draw as survey_draw};
 use host_sim::trace::Trace;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
@@ -95,37 +94,6 @@ pub fn gif(trace: &Trace) -> Result<Vec<u8>, String> {
 /// # Errors
 /// None in memory.
 pub fn trace(trace: &Trace) -> Result<Vec<u8>, String> {
-    let mut bytes = Vec::new();
-    trace.write(&mut bytes).map_err(|error| error.to_string())?;
-    Ok(bytes)
-}
-
-/// A survey after so many steps, as PNG.
-///
-/// # Errors
-/// Those of the encoder.
-pub fn survey_png(trace: &survey::Trace, steps: u32) -> Result<Vec<u8>, String> {
-    let mut png = Vec::new();
-    let picture = survey_draw::oblique_view(trace, steps);
-    survey_draw::write_png(&picture, &mut png).map_err(|error| error.to_string())?;
-    Ok(png)
-}
-
-/// A survey up to its last step as an animation.
-///
-/// # Errors
-/// Those of the encoder.
-pub fn survey_gif(trace: &survey::Trace) -> Result<Vec<u8>, String> {
-    let mut gif = Vec::new();
-    survey_draw::animation(trace, &mut gif).map_err(|error| error.to_string())?;
-    Ok(gif)
-}
-
-/// A survey's trace as host-sim writes it.
-///
-/// # Errors
-/// None in memory.
-pub fn survey_trace(trace: &survey::Trace) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     trace.write(&mut bytes).map_err(|error| error.to_string())?;
     Ok(bytes)

@@ -13,6 +13,7 @@ pub mod decisions;
 pub mod export;
 pub mod ground;
 pub mod maps;
+mod opened;
 mod pack;
 mod panels;
 pub mod platform;

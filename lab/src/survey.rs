@@ -1,38 +1,43 @@
-//! 3-D surveys: terrain as blocks that are painted from back to front, drones above.
+//! 3-D surveys: what is known as blocks that are painted from back to front, drones above.
 
+mod eye;
+mod flight;
+mod heights;
 mod setup;
+mod voxels;
 
-use std::sync::Arc;
-
-use egui::{Color32, Pos2, Rect, Sense, Shape, Stroke, Ui, Vec2, vec2};
-use host_sim::survey::{self, Stepping, Terrain, Trace};
-use planner_core::{Cell, Point};
+use egui::{Sense, Shape, Stroke, Ui};
+use host_sim::survey::Trace;
+use host_sim::survey::draw::write_png;
+use host_sim::survey::voxels::VoxelTrace;
 
 use crate::colors::{Colors, mix};
+use crate::view::lines;
+use eye::{Eye, Turn};
+use flight::Flight;
+use heights::Heights;
+use voxels::Voxels;
 
-pub use setup::{ALTITUDES, CEILINGS, ROBOTS, SIZES, SurveySetup};
+pub use flight::Layers;
+pub use setup::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
 
 /// A survey on the screen.
 pub struct SurveyScene {
-    /// What was set for it.
+    /// What was set for it; of a trace, as far as the menus reach.
     pub setup: SurveySetup,
-    /// Whether the ground that nobody has seen is drawn, pale.
-    pub shows_hidden: bool,
-    /// Whether the greatest height is drawn.
-    pub shows_ceiling: bool,
-    terrain: Arc<Terrain>,
-    run: Box<dyn Stepping>,
-    /// Columns that have been seen, row by row: since which step, and how high.
-    seen: Vec<Option<(usize, f32)>>,
-    taken: usize,
+    /// What is drawn.
+    pub layers: Layers,
+    flight: Box<dyn Flight>,
+    /// Whether it is a trace that was opened.
+    is_replay: bool,
+    /// Whether the setup gives the same survey.
+    is_repeatable: bool,
     is_over: bool,
     digest: Option<String>,
     /// Whose state is drawn: that after so many steps.
     shown: usize,
     due: f32,
-    turn: f32,
-    tilt: f32,
-    zoom: f32,
+    turn: Turn,
 }
 
 impl SurveyScene {
@@ -41,28 +46,57 @@ impl SurveyScene {
     /// # Errors
     /// What cannot be flown, in a sentence for the user.
     pub fn new(setup: SurveySetup) -> Result<Self, String> {
-        let terrain = Arc::new(setup.terrain.load(setup.size)?);
-        let run =
-            survey::open(terrain.clone(), &setup.scenario()).map_err(|error| error.to_string())?;
-        let mut scene = Self {
-            seen: vec![None; terrain.extent().cells() as usize],
+        let flight = flight::open(&setup)?;
+        let mut scene = Self::with(setup, flight);
+        // The look before the first flight.
+        scene.run_on();
+        Ok(scene)
+    }
+
+    /// A trace of a survey over heights, at its first step.
+    pub fn replay(trace: Trace) -> Self {
+        let setup = SurveySetup::of(&trace);
+        Self {
+            is_repeatable: setup.gives(&trace),
+            ..Self::opened(setup, Box::new(Heights::opened(trace)))
+        }
+    }
+
+    /// A trace of a survey among voxels, at its first step.
+    pub fn replay_voxels(trace: VoxelTrace) -> Self {
+        let setup = SurveySetup::of_voxels(&trace);
+        Self {
+            is_repeatable: setup.gives_voxels(&trace),
+            ..Self::opened(setup, Box::new(Voxels::opened(trace)))
+        }
+    }
+
+    fn opened(setup: SurveySetup, flight: Box<dyn Flight>) -> Self {
+        Self {
+            is_replay: true,
+            is_over: true,
+            digest: Some(flight.digest()),
+            ..Self::with(setup, flight)
+        }
+    }
+
+    fn with(setup: SurveySetup, flight: Box<dyn Flight>) -> Self {
+        Self {
             setup,
-            shows_hidden: true,
-            shows_ceiling: false,
-            terrain,
-            run,
-            taken: 0,
+            layers: Layers::default(),
+            flight,
+            is_replay: false,
+            is_repeatable: true,
             is_over: false,
             digest: None,
             shown: 0,
             due: 0.0,
-            turn: 0.7,
-            tilt: 0.75,
-            zoom: 1.0,
-        };
-        // The look before the first flight.
-        scene.run_on();
-        Ok(scene)
+            turn: Turn {
+                about: 0.7,
+                down: 0.75,
+                zoom: 1.0,
+            },
+        }
     }
 
     /// Lets time go by; false if there is nothing more to show.
@@ -92,16 +126,9 @@ impl SurveyScene {
     }
 
     fn run_on(&mut self) {
-        self.is_over = !self.run.step();
-        let width = usize::from(self.terrain.extent().width);
-        let found = &self.run.trace().found;
-        for (step, column) in &found[self.taken..] {
-            let index = column.cell.y as usize * width + column.cell.x as usize;
-            self.seen[index].get_or_insert((*step as usize, column.height.cells()));
-        }
-        self.taken = found.len();
+        self.is_over = !self.flight.step();
         if self.is_over {
-            self.digest = Some(self.run.trace().digest());
+            self.digest = Some(self.flight.digest());
         }
     }
 
@@ -110,15 +137,24 @@ impl SurveyScene {
         self.is_over
     }
 
-    /// Whether every column was seen and every drone has stopped.
+    /// Whether it is a trace that was opened.
+    pub fn is_replay(&self) -> bool {
+        self.is_replay
+    }
+
+    /// Whether the setup gives the same survey, as it may not with a trace that was opened.
+    pub fn is_repeatable(&self) -> bool {
+        self.is_repeatable
+    }
+
+    /// Whether everything was seen and every drone has stopped.
     pub fn is_complete(&self) -> bool {
-        let trace = self.run.trace();
-        self.is_over && trace.all_stopped && trace.complete()
+        self.is_over && self.flight.is_complete()
     }
 
     /// Steps done.
     pub fn steps(&self) -> usize {
-        self.run.trace().seen.len() - 1
+        self.flight.seen().len() - 1
     }
 
     /// The step that is shown: so many are done.
@@ -131,20 +167,26 @@ impl SurveyScene {
         self.shown = step.min(self.steps());
     }
 
-    /// Share of the columns that have been seen after each step, in per cent.
-    pub fn curve(&self) -> impl Iterator<Item = f64> + '_ {
-        let all = f64::from(self.terrain.extent().cells());
-        self.run
-            .trace()
-            .seen
-            .iter()
-            .map(move |&seen| 100.0 * f64::from(seen) / all)
+    /// The name of the place.
+    pub fn name(&self) -> &str {
+        self.flight.name()
     }
 
-    /// Flights lower or higher than allowed, through the ground, or too near.
-    pub fn violations(&self) -> u32 {
-        let safety = self.run.trace().safety;
-        safety.altitude_violations + safety.obstacle_violations + safety.separation_violations
+    /// Levels of voxels, if it is made of them.
+    pub fn levels(&self) -> Option<u8> {
+        self.flight.levels()
+    }
+
+    /// Share of what can be seen that has been seen after each step, in per cent.
+    pub fn curve(&self) -> impl Iterator<Item = f64> + '_ {
+        let all = f64::from(self.flight.all());
+        let seen = self.flight.seen().iter();
+        seen.map(move |&seen| 100.0 * f64::from(seen) / all)
+    }
+
+    /// What should never happen, in words, and how many flights did it.
+    pub fn violations(&self) -> (&'static str, u32) {
+        self.flight.violations()
     }
 
     /// The digest of the trace, when the survey is over.
@@ -152,9 +194,31 @@ impl SurveyScene {
         self.digest.as_deref()
     }
 
-    /// The run so far.
-    pub fn trace(&self) -> &Trace {
-        self.run.trace()
+    /// A picture of the shown step, as PNG.
+    ///
+    /// # Errors
+    /// Those of the encoder.
+    pub fn png(&self) -> Result<Vec<u8>, String> {
+        let mut png = Vec::new();
+        let picture = self.flight.picture(self.shown as u32);
+        write_png(&picture, &mut png).map_err(|error| error.to_string())?;
+        Ok(png)
+    }
+
+    /// The survey up to its last step as an animation.
+    ///
+    /// # Errors
+    /// Those of the encoder.
+    pub fn gif(&self) -> Result<Vec<u8>, String> {
+        self.flight.animation()
+    }
+
+    /// The trace as host-sim writes it.
+    ///
+    /// # Errors
+    /// None in memory.
+    pub fn file(&self) -> Result<Vec<u8>, String> {
+        self.flight.file()
     }
 
     /// Draws the scene over the room that is left; dragging turns it, the wheel zooms.
@@ -162,82 +226,26 @@ impl SurveyScene {
         let colors = Colors::of(ui);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let drag = response.drag_delta();
-        self.turn += drag.x * 0.008;
-        self.tilt = (self.tilt + drag.y * 0.006).clamp(0.15, 1.5);
+        let turn = &mut self.turn;
+        turn.about += drag.x * 0.008;
+        turn.down = (turn.down + drag.y * 0.006).clamp(0.15, 1.5);
         if response.hovered() {
             let (pinch, wheel) =
                 ui.input(|input| (input.zoom_delta(), input.smooth_scroll_delta().y));
-            self.zoom = (self.zoom * pinch * (wheel / 300.0).exp()).clamp(0.5, 12.0);
+            turn.zoom = (turn.zoom * pinch * (wheel / 300.0).exp()).clamp(0.5, 12.0);
         }
-        let eye = Eye::new(self, rect);
+        let eye = Eye::new(self.flight.extent(), *turn, rect);
         let painter = ui.painter_at(rect);
-        painter.add(self.ground(&eye, &colors));
-        if self.shows_ceiling {
+        painter.add(self.flight.ground(self.shown, &eye, &self.layers, &colors));
+        if self.layers.ceiling && self.levels().is_none() {
             painter.add(self.ceiling(&eye, &colors));
         }
         painter.extend(self.drones(&eye, &colors));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "terrain"));
     }
 
-    /// Every column as a block: its top and the sides that face the eye, far ones first.
-    fn ground(&self, eye: &Eye, colors: &Colors) -> Shape {
-        let extent = self.terrain.extent();
-        let highest = self.terrain.highest().cells().max(1.0);
-        let width = usize::from(extent.width);
-        let mut mesh = egui::Mesh::default();
-        let mut quad = |corners: [Pos2; 4], color: Color32| {
-            let first = mesh.vertices.len() as u32;
-            for corner in corners {
-                mesh.colored_vertex(corner, color);
-            }
-            mesh.add_triangle(first, first + 1, first + 2);
-            mesh.add_triangle(first, first + 2, first + 3);
-        };
-        let across: Vec<i16> = eye.far_to_near(extent.width, eye.east_is_near());
-        let down: Vec<i16> = eye.far_to_near(extent.height, eye.south_is_near());
-        for &y in &down {
-            for &x in &across {
-                let seen = self.seen[y as usize * width + x as usize];
-                let (height, base) = match seen.filter(|(since, _)| *since <= self.shown) {
-                    Some((_, height)) => (height, shade(height / highest, colors)),
-                    None if self.shows_hidden => {
-                        let height = self.terrain.height(Cell::new(x, y));
-                        (height.map_or(0.0, |height| height.cells()), colors.unknown)
-                    }
-                    None => continue,
-                };
-                let (x, y) = (f32::from(x), f32::from(y));
-                let top = |dx: f32, dy: f32| eye.project(x + dx, y + dy, height);
-                let foot = |dx: f32, dy: f32| eye.project(x + dx, y + dy, 0.0);
-                if height > 0.0 {
-                    let east = if eye.east_is_near() { 1.0 } else { 0.0 };
-                    let south = if eye.south_is_near() { 1.0 } else { 0.0 };
-                    let side = [
-                        top(east, 0.0),
-                        top(east, 1.0),
-                        foot(east, 1.0),
-                        foot(east, 0.0),
-                    ];
-                    quad(side, mix(base, Color32::BLACK, 0.3));
-                    let side = [
-                        top(0.0, south),
-                        top(1.0, south),
-                        foot(1.0, south),
-                        foot(0.0, south),
-                    ];
-                    quad(side, mix(base, Color32::BLACK, 0.45));
-                }
-                quad(
-                    [top(0.0, 0.0), top(1.0, 0.0), top(1.0, 1.0), top(0.0, 1.0)],
-                    base,
-                );
-            }
-        }
-        Shape::mesh(mesh)
-    }
-
     fn ceiling(&self, eye: &Eye, colors: &Colors) -> Shape {
-        let extent = self.terrain.extent();
+        let extent = self.flight.extent();
         let (width, height) = (f32::from(extent.width), f32::from(extent.height));
         let z = self.setup.ceiling;
         let corners = [(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)];
@@ -246,31 +254,16 @@ impl SurveyScene {
     }
 
     fn drones(&self, eye: &Eye, colors: &Colors) -> Vec<Shape> {
-        let trace = self.run.trace();
-        let mut ways: Vec<Vec<Pos2>> = vec![Vec::new(); trace.robots];
-        let mut last = trace.starts.clone();
-        for (way, &start) in ways.iter_mut().zip(&trace.starts) {
-            way.push(eye.over(start));
-        }
-        let flown = |record: &survey::Record| (record.tick as usize) < self.shown;
-        let done = trace.records.partition_point(flown);
-        for record in &trace.records[..done] {
-            let robot = usize::from(record.robot);
-            ways[robot].push(eye.over(record.at));
-            last[robot] = record.at;
-        }
+        let ways = self.flight.ways(self.shown);
         let mut shapes = Vec::new();
-        for (robot, way) in ways.into_iter().enumerate() {
+        for (robot, way) in ways.iter().enumerate() {
             let stroke = Stroke::new(1.5, colors.robot(robot));
-            shapes.push(Shape::line(way, stroke));
+            shapes.extend(lines(way.iter().map(|&at| eye.over(at)), stroke));
         }
-        for (robot, &at) in last.iter().enumerate() {
+        for (robot, way) in ways.iter().enumerate() {
+            let Some(&at) = way.last() else { continue };
             let middle = eye.over(at);
-            let ground = self
-                .terrain
-                .height(at.cell())
-                .map_or(0.0, |height| height.cells());
-            let foot = eye.project(at.x, at.y, ground);
+            let foot = eye.project(at.x, at.y, self.flight.beneath(at));
             let plumb = Stroke::new(1.0, mix(colors.free, colors.ink, 0.6));
             shapes.extend(Shape::dashed_line(&[middle, foot], plumb, 3.0, 3.0));
             shapes.push(Shape::circle_filled(middle, 6.0, colors.ink));
@@ -280,82 +273,11 @@ impl SurveyScene {
     }
 }
 
-/// From low to high in colours whose brightness rises with the height, so that they
-/// need no hue.
-fn shade(share: f32, colors: &Colors) -> Color32 {
-    let (low, high) = match colors == &Colors::DARK {
-        true => (
-            Color32::from_rgb(40, 80, 100),
-            Color32::from_rgb(250, 235, 190),
-        ),
-        false => (
-            Color32::from_rgb(70, 110, 130),
-            Color32::from_rgb(255, 242, 205),
-        ),
-    };
-    mix(low, high, share.clamp(0.0, 1.0))
-}
-
-/// Where one looks from: turned about the middle of the terrain, without perspective.
-struct Eye {
-    middle: Vec2,
-    centre: Pos2,
-    sine: f32,
-    cosine: f32,
-    /// How steeply one looks down, as sine and cosine.
-    down: f32,
-    along: f32,
-    scale: f32,
-}
-
-impl Eye {
-    fn new(scene: &SurveyScene, rect: Rect) -> Self {
-        let extent = scene.terrain.extent();
-        let size = vec2(extent.width.into(), extent.height.into());
-        let fitting = (rect.width() / (size.length())).min(rect.height() / (size.length() * 0.85));
-        Self {
-            middle: size / 2.0,
-            centre: rect.center() + vec2(0.0, rect.height() * 0.05),
-            sine: scene.turn.sin(),
-            cosine: scene.turn.cos(),
-            down: scene.tilt.sin(),
-            along: scene.tilt.cos(),
-            scale: fitting * scene.zoom,
-        }
-    }
-
-    fn project(&self, x: f32, y: f32, z: f32) -> Pos2 {
-        let (x, y) = (x - self.middle.x, y - self.middle.y);
-        let right = x * self.cosine - y * self.sine;
-        let near = x * self.sine + y * self.cosine;
-        self.centre + vec2(right, near * self.down - z * self.along) * self.scale
-    }
-
-    fn over(&self, point: Point) -> Pos2 {
-        self.project(point.x, point.y, point.z)
-    }
-
-    fn east_is_near(&self) -> bool {
-        self.sine > 0.0
-    }
-
-    fn south_is_near(&self) -> bool {
-        self.cosine > 0.0
-    }
-
-    fn far_to_near(&self, cells: u16, end_is_near: bool) -> Vec<i16> {
-        let cells = 0..cells as i16;
-        if end_is_near {
-            cells.collect()
-        } else {
-            cells.rev().collect()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::setup::tests::unusual;
+    use host_sim::survey::{self, TerrainSource, voxels};
+
+    use super::setup::tests::{town, unusual};
     use super::*;
 
     fn flown(setup: SurveySetup) -> SurveyScene {
@@ -364,17 +286,29 @@ mod tests {
         scene
     }
 
+    /// What is known to have been seen after the shown step.
+    fn seen(scene: &SurveyScene) -> u32 {
+        scene.flight.seen()[scene.shown]
+    }
+
     #[test]
     fn a_survey_on_screen_is_the_survey_of_host_sim() {
         let hills = SurveySetup {
             size: 24,
             ..SurveySetup::default()
         };
-        for setup in [hills, unusual()] {
+        for setup in [hills, unusual(), town()] {
             let scene = flown(setup.clone());
-            let terrain = setup.terrain.load(setup.size).unwrap();
-            let trace = survey::run(&terrain, &setup.scenario()).unwrap();
-            assert_eq!(scene.digest(), Some(&*trace.digest()));
+            let digest = match setup.terrain.scene(setup.size) {
+                Some(scene) => voxels::run(&scene, &setup.voxel_scenario())
+                    .unwrap()
+                    .digest(),
+                None => {
+                    let terrain = setup.terrain.load(setup.size).unwrap();
+                    survey::run(&terrain, &setup.scenario()).unwrap().digest()
+                }
+            };
+            assert_eq!(scene.digest(), Some(&*digest));
             assert_eq!(scene.curve().last(), Some(100.0));
             assert!(scene.is_complete());
         }
@@ -382,20 +316,42 @@ mod tests {
 
     #[test]
     fn every_step_can_be_gone_back_to() {
-        let mut scene = flown(unusual());
-        let mut ahead = SurveyScene::new(unusual()).unwrap();
-        for step in 0..scene.steps() {
-            scene.show_step(step);
-            assert_eq!(ahead.shown(), step);
-            let visible = |scene: &SurveyScene| {
-                let seen = scene.seen.iter().flatten();
-                seen.filter(|(since, _)| *since <= scene.shown).count()
-            };
-            assert_eq!(visible(&scene), visible(&ahead));
-            let curve = ahead.trace().seen[step];
-            assert_eq!(visible(&ahead), curve as usize);
-            assert!(ahead.step());
+        for setup in [unusual(), town()] {
+            let mut scene = flown(setup.clone());
+            let mut ahead = SurveyScene::new(setup).unwrap();
+            for step in 0..scene.steps() {
+                scene.show_step(step);
+                assert_eq!(ahead.shown(), step);
+                assert_eq!(seen(&scene), seen(&ahead));
+                assert_eq!(scene.flight.ways(step), ahead.flight.ways(step));
+                assert!(ahead.step());
+            }
+            assert!(!ahead.step());
         }
-        assert!(!ahead.step());
+    }
+
+    #[test]
+    fn a_saved_trace_shows_what_was_flown() {
+        for setup in [unusual(), town()] {
+            let flown = flown(setup.clone());
+            let file = flown.file().unwrap();
+            let mut replay = match setup.terrain {
+                TerrainSource::Town(_) => {
+                    SurveyScene::replay_voxels(VoxelTrace::read(&*file).unwrap())
+                }
+                _ => SurveyScene::replay(Trace::read(&*file).unwrap()),
+            };
+            assert_eq!((replay.shown(), replay.steps()), (0, flown.steps()));
+            assert_eq!(replay.setup, setup);
+            assert!(replay.is_replay() && replay.is_repeatable() && replay.is_complete());
+            assert_eq!(replay.digest(), flown.digest());
+            assert_eq!(replay.violations(), flown.violations());
+            assert!(replay.curve().eq(flown.curve()));
+            while replay.step() {}
+            assert_eq!(replay.shown(), flown.steps());
+            let last = flown.steps();
+            assert_eq!(replay.flight.ways(last), flown.flight.ways(last));
+            assert_eq!(replay.file().unwrap(), file);
+        }
     }
 }

@@ -397,7 +397,8 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
         for (robot, way) in ground::ways(watch, frame.layers.trail).iter().enumerate() {
             let lane = place.lane(robot, robots);
             let stroke = Stroke::new(width, color(robot));
-            shapes.extend(lines(way, |cell| place.middle(cell) + lane, stroke));
+            let way = way.iter().map(|&cell| place.middle(cell) + lane);
+            shapes.extend(lines(way, stroke));
         }
     }
     let positions = watch.positions();
@@ -416,7 +417,8 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
                     cell = cell.step(step);
                     ground::extend(&mut way, cell);
                 }
-                shapes.extend(lines(&way, |cell| place.middle(cell), stroke));
+                let way = way.into_iter().map(|cell| place.middle(cell));
+                shapes.extend(lines(way, stroke));
             }
             if let (true, Some(goal)) = (frame.layers.goals, record.goal) {
                 let (middle, arm) = (place.middle(goal), place.robot() * 0.8);
@@ -437,10 +439,10 @@ fn marks(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
 }
 
 /// A way as lines, one as far as it does not turn back: there, egui would widen it.
-fn lines(way: &[Cell], middle: impl Fn(Cell) -> Pos2, stroke: Stroke) -> Vec<Shape> {
+pub(crate) fn lines(way: impl IntoIterator<Item = Pos2>, stroke: Stroke) -> Vec<Shape> {
     let mut lines = Vec::new();
     let mut points: Vec<Pos2> = Vec::new();
-    for point in way.iter().map(|&cell| middle(cell)) {
+    for point in way {
         if let [.., a, b] = points[..]
             && (b - a).dot(point - b) < 0.0
         {

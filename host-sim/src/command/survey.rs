@@ -8,7 +8,7 @@ use host_sim::medium::MediumKind;
 use host_sim::survey::draw::{
     animate, animation, coverage_plot, oblique_view, top_view, write_png,
 };
-use host_sim::survey::voxels::{self, Scene};
+use host_sim::survey::voxels::{self, Scene, VoxelTrace};
 use host_sim::survey::{
     DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, run,
 };
@@ -23,7 +23,7 @@ pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
     /// OctoMap .bt file. town:SEED is a town of voxels, up to 64×64×18, with rooms and
     /// bridges: there another planner flies, and of the options below only size, robots,
-    /// range, loss, seed, max-ticks, out and json apply.
+    /// range, medium, byte-budget, loss, seed, max-ticks, out and json apply.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
     /// Columns along a side of a drawn terrain.
@@ -122,12 +122,17 @@ impl Survey {
         let scenario = voxels::Scenario {
             robots: self.robots.into(),
             range: self.range as u8,
+            medium: self.medium,
+            byte_budget: self.byte_budget,
             loss: self.loss,
             seed: self.seed,
             max_ticks: self.max_ticks,
         };
         let trace = voxels::run(scene, &scenario)?;
         let work = trace.work.iter().copied();
+        let robots: Vec<_> = (0..scenario.robots)
+            .map(|robot| voxel_robot(&trace, robot))
+            .collect();
         let json = serde_json::json!({
             "complete": trace.complete(),
             "ticks_to_seen": trace.ticks_to(1.0),
@@ -144,9 +149,11 @@ impl Survey {
             "map": scene.name(),
             "planner": "voxel-survey",
             "range": scenario.range,
+            "medium": scenario.medium,
+            "byte_budget": scenario.byte_budget,
             "loss": scenario.loss,
             "seed": scenario.seed,
-            "robots": scenario.robots,
+            "robots": robots,
         });
         let json = serde_json::to_string_pretty(&json)?;
         let out = self
@@ -209,6 +216,22 @@ impl Survey {
             ..scenario
         }
     }
+}
+
+/// What one robot of a survey of voxels came to.
+fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
+    let decisions = trace.ways.len();
+    let of = |index: &usize| index % decisions == robot;
+    let (way, sent) = (&trace.ways[robot], (0..trace.sent.len()).filter(of));
+    let sent: Vec<_> = sent.map(|index| trace.sent[index]).collect();
+    let work = (0..trace.work.len()).filter(of);
+    serde_json::json!({
+        "start": (way[0].x, way[0].y, way[0].z),
+        "steps": way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
+        "work": work.map(|index| u64::from(trace.work[index])).sum::<u64>(),
+        "frames_sent": sent.iter().map(|sent| sent.frames).sum::<u32>(),
+        "bytes_sent": sent.iter().map(|sent| sent.bytes).sum::<u32>(),
+    })
 }
 
 fn words(ticks: Option<u32>) -> String {

@@ -397,12 +397,9 @@ impl<const T: usize> Simulation<T> {
             .filter(|robot| robot.alive)
             .map(|robot| robot.at)
             .collect();
-        for (i, a) in alive.iter().enumerate() {
-            for b in &alive[i + 1..] {
-                let near = a.distance(*b) < self.scenario.limits.separation - TOLERANCE;
-                self.trace.safety.separation_violations += u32::from(near);
-            }
-        }
+        self.trace
+            .safety
+            .check_separation(&self.scenario.limits, &alive);
     }
 
     fn happens(&mut self, probability: f64) -> bool {
@@ -414,10 +411,10 @@ impl<const T: usize> Simulation<T> {
 const TOLERANCE: f32 = 1e-3;
 
 impl Safety {
-    fn check_flight(
+    pub(super) fn check_flight(
         &mut self,
         terrain: &Terrain,
-        limits: &planner_core::survey::Limits,
+        limits: &Limits,
         from: Point,
         to: Point,
     ) {
@@ -428,6 +425,16 @@ impl Safety {
         );
         self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
         self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
+    }
+
+    /// Given where the living robots are.
+    pub(super) fn check_separation(&mut self, limits: &Limits, alive: &[Point]) {
+        for (i, a) in alive.iter().enumerate() {
+            for b in &alive[i + 1..] {
+                let near = a.distance(*b) < limits.separation - TOLERANCE;
+                self.separation_violations += u32::from(near);
+            }
+        }
     }
 }
 

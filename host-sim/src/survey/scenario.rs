@@ -8,7 +8,9 @@ use crate::medium::MediumKind;
 pub const DEFAULT_BYTE_BUDGET: u16 = 275;
 
 /// How the robots decide.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize,
+)]
 #[serde(rename_all = "kebab-case")]
 pub enum Planner {
     /// Pockets, a local choice on the map, coordinated frontiers: the best.
@@ -58,7 +60,7 @@ impl std::str::FromStr for Kill {
 }
 
 /// Everything about a run but the terrain.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// How the robots decide.
     pub planner: Planner,

@@ -74,7 +74,7 @@ impl TerrainSource {
 }
 
 /// Columns along the longest side of a map.
-const LARGEST: u32 = 512;
+pub(super) const LARGEST: u32 = 512;
 
 fn from_image(path: &PathBuf) -> Result<Terrain, String> {
     let image = image::open(path)

@@ -9,6 +9,8 @@
 //! bytes, little-endian: tick `u32`, robot `u8`, x, y, z `f32`, action `u8`, goal x, y
 //! `i16`, gain `f32`, known `u32`, work `u32`, frames `u32`, bytes `u32`.
 
+mod read;
+
 use std::fmt::Write as _;
 use std::io;
 
@@ -21,6 +23,13 @@ use sha2::{Digest, Sha256};
 use super::scenario::Scenario;
 use super::terrain::Terrain;
 use crate::fleet::Sent;
+use crate::trace::Kind;
+
+const KIND: Kind = Kind {
+    format: "host-sim survey trace",
+    version: 1,
+    columns: &COLUMNS,
+};
 
 /// The columns of a record.
 const COLUMNS: [&str; 13] = [
@@ -208,8 +217,8 @@ impl Trace {
             })
             .collect();
         let header = json!({
-            "format": "host-sim survey trace",
-            "version": 1,
+            "format": KIND.format,
+            "version": KIND.version,
             "digest": self.digest(),
             "records": self.records.len(),
             "planner": self.scenario.planner,
@@ -269,33 +278,37 @@ impl Trace {
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        let mut sha = Sha256::new();
-        for record in &self.records {
-            sha.update(record.tick.to_le_bytes());
-            sha.update([record.robot]);
-            for coordinate in [record.at.x, record.at.y, record.at.z] {
-                sha.update(coordinate.to_le_bytes());
-            }
-            sha.update([record.action()]);
-            sha.update(record.goal().x.to_le_bytes());
-            sha.update(record.goal().y.to_le_bytes());
-            sha.update(record.gain.to_le_bytes());
-            for number in [
-                record.known,
-                record.work,
-                record.sent.frames,
-                record.sent.bytes,
-            ] {
-                sha.update(number.to_le_bytes());
-            }
-        }
-        let digest = sha.finalize();
-        digest
-            .iter()
-            .take(8)
-            .fold(String::new(), |mut digits, byte| {
-                write!(digits, "{byte:02x}").expect("a String takes everything");
-                digits
-            })
+        digest(&self.records)
     }
+}
+
+fn digest(records: &[Record]) -> String {
+    let mut sha = Sha256::new();
+    for record in records {
+        sha.update(record.tick.to_le_bytes());
+        sha.update([record.robot]);
+        for coordinate in [record.at.x, record.at.y, record.at.z] {
+            sha.update(coordinate.to_le_bytes());
+        }
+        sha.update([record.action()]);
+        sha.update(record.goal().x.to_le_bytes());
+        sha.update(record.goal().y.to_le_bytes());
+        sha.update(record.gain.to_le_bytes());
+        for number in [
+            record.known,
+            record.work,
+            record.sent.frames,
+            record.sent.bytes,
+        ] {
+            sha.update(number.to_le_bytes());
+        }
+    }
+    let digest = sha.finalize();
+    digest
+        .iter()
+        .take(8)
+        .fold(String::new(), |mut digits, byte| {
+            write!(digits, "{byte:02x}").expect("a String takes everything");
+            digits
+        })
 }

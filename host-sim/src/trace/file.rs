@@ -4,6 +4,7 @@ use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 
 use planner_core::{Cell, Extent, RobotId};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -14,8 +15,11 @@ use crate::planners::PlannerKind;
 use crate::run::{Scenario, ScenarioError};
 use crate::world::{World, WorldError};
 
-const FORMAT: &str = "host-sim trace";
-const VERSION: u32 = 2;
+const KIND: Kind = Kind {
+    format: "host-sim trace",
+    version: 2,
+    columns: &COLUMNS,
+};
 
 /// A trace that cannot be read.
 #[derive(Debug, Error)]
@@ -25,10 +29,15 @@ pub enum TraceError {
     Io(#[from] io::Error),
     /// See the message.
     #[error("line 1: expected the JSON header of a trace: {0}; is this a trace file?")]
-    Header(serde_json::Error),
+    Header(#[from] serde_json::Error),
     /// See the message.
-    #[error("is `{format}` version {version}; this program reads `{FORMAT}` version {VERSION}")]
+    #[error(
+        "is `{format}` version {version}, this program reads `{}` version {}; \
+         run the scenario again to have a trace of that version", .reads.format, .reads.version
+    )]
     Format {
+        /// What can be read.
+        reads: Kind,
         /// What the header says.
         format: String,
         /// What the header says.
@@ -51,6 +60,9 @@ pub enum TraceError {
     #[error("the header's scenario: {0}")]
     Scenario(#[from] ScenarioError),
     /// See the message.
+    #[error("the header's survey: {0}; it was edited or damaged")]
+    Survey(String),
+    /// See the message.
     #[error("line {line}: expected {expected}, found {found:?}")]
     Line {
         /// Which line, from 1.
@@ -61,7 +73,10 @@ pub enum TraceError {
         found: String,
     },
     /// See the message.
-    #[error("has {found} records, its header says {expected}; it was cut off or edited")]
+    #[error(
+        "has {found} records, its header says {expected}; it was cut off or edited: \
+         copy it again from where it was written"
+    )]
     Records {
         /// By the header.
         expected: usize,
@@ -69,13 +84,89 @@ pub enum TraceError {
         found: usize,
     },
     /// See the message.
-    #[error("has digest {found}, its header says {expected}; it was edited or damaged")]
+    #[error(
+        "has digest {found}, its header says {expected}; it was edited or damaged: \
+         copy it again from where it was written"
+    )]
     Digest {
         /// By the header.
         expected: String,
         /// Of the records.
         found: String,
     },
+}
+
+/// What traces of one kind have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// What the header says.
+    pub format: &'static str,
+    /// What the header says.
+    pub version: u32,
+    /// The columns of a record.
+    pub columns: &'static [&'static str],
+}
+
+/// What every header says of the file itself.
+#[derive(Deserialize)]
+struct Label {
+    format: String,
+    version: u32,
+    digest: String,
+    records: usize,
+}
+
+impl Kind {
+    /// Takes a trace file of this kind apart, and checks that it is whole; `parse` reads
+    /// a record.
+    pub(crate) fn read<H: DeserializeOwned, R>(
+        self,
+        from: impl BufRead,
+        parse: impl Fn(&str) -> Option<R>,
+        digest: impl Fn(&[R]) -> String,
+    ) -> Result<(H, Vec<R>), TraceError> {
+        let mut lines = from.lines();
+        let header = lines.next().transpose()?.unwrap_or_default();
+        let label: Label = serde_json::from_str(&header)?;
+        if (&*label.format, label.version) != (self.format, self.version) {
+            return Err(TraceError::Format {
+                reads: self,
+                format: label.format,
+                version: label.version,
+            });
+        }
+        let header = serde_json::from_str(&header)?;
+        let columns = lines.next().transpose()?.unwrap_or_default();
+        if columns != self.columns.join(",") {
+            return Err(TraceError::Line {
+                line: 2,
+                expected: format!("the columns {}", self.columns.join(",")),
+                found: columns,
+            });
+        }
+        let records = lines
+            .zip(3..)
+            .map(|(text, line)| {
+                let text = text?;
+                parse(&text).ok_or_else(|| TraceError::Line {
+                    line,
+                    expected: format!("{} numbers with commas between", self.columns.len()),
+                    found: text,
+                })
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        if records.len() != label.records {
+            return Err(TraceError::Records {
+                expected: label.records,
+                found: records.len(),
+            });
+        }
+        let (expected, found) = (label.digest, digest(&records));
+        if found != expected {
+            return Err(TraceError::Digest { expected, found });
+        }
+        Ok((header, records))
+    }
 }
 
 #[derive(Serialize, Deserialize)]
@@ -146,44 +237,11 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let mut lines = from.lines();
-        let header = lines.next().transpose()?.unwrap_or_default();
-        let header: Header = serde_json::from_str(&header).map_err(TraceError::Header)?;
-        let columns = lines.next().transpose()?.unwrap_or_default();
-        if columns != COLUMNS.join(",") {
-            return Err(TraceError::Line {
-                line: 2,
-                expected: format!("the columns {}", COLUMNS.join(",")),
-                found: columns,
-            });
-        }
-        let records = lines
-            .zip(3..)
-            .map(|(text, line)| {
-                let text = text?;
-                parse_record(&text).ok_or_else(|| TraceError::Line {
-                    line,
-                    expected: format!("{} integers with commas between", COLUMNS.len()),
-                    found: text,
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        if records.len() != header.records {
-            return Err(TraceError::Records {
-                expected: header.records,
-                found: records.len(),
-            });
-        }
-        let expected = header.digest.clone();
-        let trace = Self {
+        let (header, records) = KIND.read::<Header, _>(from, parse_record, super::digest)?;
+        Ok(Self {
             scenario: header.scenario()?,
             records,
-        };
-        let found = trace.digest();
-        if found != expected {
-            return Err(TraceError::Digest { expected, found });
-        }
-        Ok(trace)
+        })
     }
 }
 
@@ -196,8 +254,8 @@ impl Header {
             (x, y, closure.from, closure.until)
         };
         Self {
-            format: FORMAT.into(),
-            version: VERSION,
+            format: KIND.format.into(),
+            version: KIND.version,
             digest: trace.digest(),
             records: trace.records.len(),
             planner: scenario.planner,
@@ -236,12 +294,6 @@ impl Header {
     }
 
     fn scenario(self) -> Result<Scenario, TraceError> {
-        if self.format != FORMAT || self.version != VERSION {
-            return Err(TraceError::Format {
-                format: self.format,
-                version: self.version,
-            });
-        }
         let death = |(robot, tick)| Death {
             robot: RobotId(robot),
             tick,

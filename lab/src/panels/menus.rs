@@ -1,5 +1,7 @@
 //! What can be set: map, robots, planner, radio, view, and what can be taken away.
 
+use std::mem::discriminant;
+
 use clap::ValueEnum;
 use egui::{Button, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
 use host_sim::medium::{MediumKind, Reach};
@@ -13,9 +15,9 @@ use crate::app::App;
 use crate::export;
 use crate::ground::ALL_TICKS;
 use crate::maps::{Map, file_name};
-use crate::platform::{choose_file, save};
+use crate::platform::{Inbox, choose_file, save};
 use crate::setup::Setup;
-use crate::survey::{ALTITUDES, CEILINGS, ROBOTS, SIZES, SurveyScene};
+use crate::survey::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveyScene, SurveySetup};
 use crate::view::Tool;
 
 const ADDRESS_COPIED: &str = "copied: the part of the page's address behind #";
@@ -98,21 +100,7 @@ impl App {
                 number(ui, "seed", DragValue::new(seed));
             });
         }
-        ui.horizontal(|ui| {
-            if cfg!(target_arch = "wasm32") {
-                if ui.button("Open a file …").clicked() {
-                    choose_file("", &self.inbox, ui.ctx());
-                }
-            } else {
-                let edit = TextEdit::singleline(&mut self.path).hint_text("path of a map or trace");
-                let entered = ui.add(edit.desired_width(150.0)).lost_focus()
-                    && ui.input(|input| input.key_pressed(egui::Key::Enter));
-                if ui.button("Open").clicked() || entered {
-                    choose_file(&self.path, &self.inbox, ui.ctx());
-                }
-            }
-        });
-        ui.label(RichText::new("or drop a map or a trace here").weak());
+        files(ui, &self.inbox, &mut self.path);
         if let Some(map) = fresh {
             *setup = Setup {
                 map,
@@ -246,27 +234,18 @@ impl App {
         };
         let mut setup = survey.setup.clone();
         title(ui, "Terrain");
-        let (is_urban, mut seed) = match setup.terrain {
-            TerrainSource::Urban(seed) => (true, seed),
-            TerrainSource::Gaussian(seed) => (false, seed),
-            TerrainSource::Town(_) | TerrainSource::File(_) => (false, 0),
-        };
-        let mut urban = is_urban;
-        ui.horizontal(|ui| {
-            ui.selectable_value(&mut urban, false, "hills");
-            ui.selectable_value(&mut urban, true, "town");
-            number(ui, "seed", DragValue::new(&mut seed));
-        });
-        setup.terrain = match urban {
-            true => TerrainSource::Urban(seed),
-            false => TerrainSource::Gaussian(seed),
-        };
-        ui.add(Slider::new(&mut setup.size, SIZES).text("columns a side"));
+        terrain(ui, &mut setup);
+        files(ui, &self.inbox, &mut self.path);
         title(ui, "Drones");
         ui.add(Slider::new(&mut setup.robots, ROBOTS).text("drones"));
-        choice(ui, "planner", &mut setup.planner, Planner::value_variants());
-        ui.add(Slider::new(&mut setup.min_altitude, ALTITUDES).text("least altitude"));
-        ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
+        if !setup.is_of_voxels() {
+            choice(ui, "planner", &mut setup.planner, Planner::value_variants());
+        }
+        ui.add(Slider::new(&mut setup.range, RANGES).text("sensor range"));
+        if !setup.is_of_voxels() {
+            ui.add(Slider::new(&mut setup.min_altitude, ALTITUDES).text("least altitude"));
+            ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
+        }
         ui.horizontal(|ui| {
             number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
         });
@@ -283,16 +262,30 @@ impl App {
                 .text("loss"),
         );
         title(ui, "View");
-        ui.checkbox(&mut survey.shows_hidden, "ground that was not seen");
-        ui.checkbox(&mut survey.shows_ceiling, "ceiling");
+        let levels = survey.levels();
+        let layers = &mut survey.layers;
+        ui.checkbox(&mut layers.hidden, "ground that was not seen");
+        match levels {
+            None => {
+                ui.checkbox(&mut layers.ceiling, "ceiling");
+            }
+            Some(levels) => {
+                layers.levels = layers.levels.min(levels);
+                ui.add(Slider::new(&mut layers.levels, 1..=levels).text("levels"));
+            }
+        }
         let changed = setup != survey.setup;
         title(ui, "Take away");
         let done = survey_exports(ui, survey);
-        if changed {
-            let hidden = (survey.shows_hidden, survey.shows_ceiling);
+        let again = survey.is_replay()
+            && ui
+                .add_enabled(survey.is_repeatable(), Button::new("Run again"))
+                .clicked();
+        if changed || again {
+            let layers = survey.layers;
             self.fly(setup);
             if let Some(survey) = &mut self.survey {
-                (survey.shows_hidden, survey.shows_ceiling) = hidden;
+                survey.layers = layers;
             }
         }
         if let Some(done) = done {
@@ -303,30 +296,33 @@ impl App {
 
 /// Buttons that take a survey away; says what was done.
 fn survey_exports(ui: &mut Ui, survey: &SurveyScene) -> Option<Result<String, String>> {
-    let (trace, shown) = (survey.trace(), survey.shown() as u32);
-    let name = file_name(trace.terrain.name());
+    let name = file_name(survey.name());
     let mut done = None;
     ui.horizontal_wrapped(|ui| {
         if ui.button("PNG").clicked() {
-            let png = export::survey_png(trace, shown);
+            let png = survey.png();
             done = Some(png.and_then(|png| save(&format!("{name}.png"), &png)));
         }
         if ui.button("GIF").clicked() {
-            let gif = export::survey_gif(trace);
+            let gif = survey.gif();
             done = Some(gif.and_then(|gif| save(&format!("{name}.gif"), &gif)));
         }
         if ui.button("Trace").clicked() {
-            let csv = export::survey_trace(trace);
+            let csv = survey.file();
             done = Some(csv.and_then(|csv| save(&format!("{name}-trace.csv"), &csv)));
         }
     });
     ui.horizontal_wrapped(|ui| {
         let command = survey.setup.command();
-        if ui.button("Copy command").on_hover_text(&command).clicked() {
+        let hint = "this trace was flown with more than the menus can set";
+        let button = ui.add_enabled(survey.is_repeatable(), Button::new("Copy command"));
+        let button = button.on_disabled_hover_text(hint);
+        if button.on_hover_text(&command).clicked() {
             ui.ctx().copy_text(command);
             done = Some(Ok("copied".to_owned()));
         }
-        if ui.button("Copy address").clicked() {
+        let button = ui.add_enabled(survey.is_repeatable(), Button::new("Copy address"));
+        if button.on_disabled_hover_text(hint).clicked() {
             ui.ctx().copy_text(format!("#{}", survey.setup.address()));
             done = Some(Ok(ADDRESS_COPIED.to_owned()));
         }
@@ -335,6 +331,59 @@ fn survey_exports(ui: &mut Ui, survey: &SurveyScene) -> Option<Result<String, St
         ui.label(format!("trace digest {digest}"));
     }
     done
+}
+
+/// A way in for maps and traces.
+fn files(ui: &mut Ui, inbox: &Inbox, path: &mut String) {
+    ui.horizontal(|ui| {
+        if cfg!(target_arch = "wasm32") {
+            if ui.button("Open a file …").clicked() {
+                choose_file("", inbox, ui.ctx());
+            }
+        } else {
+            let edit = TextEdit::singleline(path).hint_text("path of a map or trace");
+            let entered = ui.add(edit.desired_width(150.0)).lost_focus()
+                && ui.input(|input| input.key_pressed(egui::Key::Enter));
+            if ui.button("Open").clicked() || entered {
+                choose_file(path, inbox, ui.ctx());
+            }
+        }
+    });
+    ui.label(RichText::new("or drop a map or a trace here").weak());
+}
+
+/// A kind of place, drawn by a seed.
+type Place = fn(u64) -> TerrainSource;
+
+/// Which place, which seed, how large.
+fn terrain(ui: &mut Ui, setup: &mut SurveySetup) {
+    let mut seed = match setup.terrain {
+        TerrainSource::Gaussian(seed) | TerrainSource::Urban(seed) | TerrainSource::Town(seed) => {
+            seed
+        }
+        TerrainSource::File(_) => 0,
+    };
+    let places: [(Place, _); 3] = [
+        (TerrainSource::Gaussian, "hills"),
+        (TerrainSource::Urban, "town"),
+        (TerrainSource::Town, "town with rooms"),
+    ];
+    let is_chosen =
+        |place: fn(u64) -> TerrainSource| discriminant(&place(0)) == discriminant(&setup.terrain);
+    let mut chosen = places.iter().position(|(place, _)| is_chosen(*place));
+    ui.horizontal_wrapped(|ui| {
+        for (index, (_, name)) in places.iter().enumerate() {
+            ui.selectable_value(&mut chosen, Some(index), *name);
+        }
+    });
+    ui.horizontal(|ui| number(ui, "seed", DragValue::new(&mut seed)));
+    // A place out of a trace stays until another one is chosen.
+    if let Some(index) = chosen {
+        setup.terrain = places[index].0(seed);
+    }
+    let sizes = setup.sizes();
+    setup.size = setup.size.min(*sizes.end());
+    ui.add(Slider::new(&mut setup.size, sizes).text("columns a side"));
 }
 
 fn title(ui: &mut Ui, text: &str) {

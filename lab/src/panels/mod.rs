@@ -102,7 +102,7 @@ impl App {
         if let Some(survey) = &self.survey {
             let steps = survey.shown();
             let seen = survey.curve().nth(steps).unwrap_or(0.0);
-            let name = &survey.trace().terrain.name();
+            let name = survey.name();
             let verdict = match () {
                 () if !survey.is_over() || steps < survey.steps() => "",
                 () if survey.is_complete() => ": complete",

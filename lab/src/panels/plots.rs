@@ -68,10 +68,9 @@ impl App {
             "under way"
         };
         ui.label(format!("The survey is {state}."));
-        let violations = survey.violations();
-        ui.label(match violations {
-            0 => "No flight was too low, too high or too near to another.".to_owned(),
-            _ => format!("{violations} flights were too low, too high or too near to another."),
+        ui.label(match survey.violations() {
+            (wrong, 0) => format!("No flight was {wrong}."),
+            (wrong, flights) => format!("{flights} flights were {wrong}."),
         });
         ui.label("Drag turns the view, the wheel or two fingers zoom.");
     }

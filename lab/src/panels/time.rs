@@ -21,6 +21,7 @@ impl App {
             }
             if ui.button("Restart").clicked() {
                 match &self.survey {
+                    Some(survey) if survey.is_replay() => self.show(0),
                     Some(survey) => self.fly(survey.setup.clone()),
                     None if self.runs.iter().any(|run| run.watch.is_replay()) => self.show(0),
                     None => {

@@ -6,16 +6,19 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use host_sim::medium::MediumKind;
-use host_sim::survey::{Planner, Scenario, TerrainSource};
+use host_sim::survey::voxels::{self, VoxelTrace};
+use host_sim::survey::{Planner, Scenario, TerrainSource, Trace};
 
-/// Columns along a side: what can be drawn in time.
-pub const SIZES: RangeInclusive<u16> = 16..=128;
 /// Numbers of drones.
 pub const ROBOTS: RangeInclusive<u8> = 1..=32;
 /// Least altitudes.
 pub const ALTITUDES: RangeInclusive<f32> = 1.0..=6.0;
 /// Greatest heights.
 pub const CEILINGS: RangeInclusive<f32> = 20.0..=60.0;
+/// Sensor ranges in cells.
+pub const RANGES: RangeInclusive<u8> = 2..=12;
+/// Steps after which a survey is given up, as by the command.
+const MAX_TICKS: u32 = 20_000;
 
 /// What is flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +31,8 @@ pub struct SurveySetup {
     pub planner: Planner,
     /// Number of drones.
     pub robots: u8,
+    /// Sensor range in cells.
+    pub range: u8,
     /// Least altitude over ground, in cells.
     pub min_altitude: f32,
     /// Greatest height, in cells.
@@ -47,6 +52,7 @@ impl Default for SurveySetup {
             size: 60,
             planner: Planner::CoordinatedSurvey,
             robots: 4,
+            range: 8,
             min_altitude: 2.0,
             ceiling: 40.0,
             medium: MediumKind::Radio,
@@ -57,28 +63,105 @@ impl Default for SurveySetup {
 }
 
 impl SurveySetup {
-    /// The scenario over the terrain.
+    /// The scenario over a terrain of heights.
     pub fn scenario(&self) -> Scenario {
         let mut scenario = Scenario::new(self.planner, self.robots.into(), self.seed);
+        scenario.limits.range = self.range.into();
         scenario.limits.min_altitude = self.min_altitude;
         scenario.limits.ceiling = self.ceiling;
         scenario.medium = self.medium;
         scenario.loss = self.loss;
+        scenario.max_ticks = MAX_TICKS;
         scenario
     }
 
-    /// Every setting but the terrain, as names and values.
-    fn settings(&self) -> [(&'static str, String); 8] {
-        [
-            ("size", self.size.to_string()),
-            ("planner", self.planner.to_string()),
-            ("robots", self.robots.to_string()),
-            ("min-altitude", self.min_altitude.to_string()),
-            ("ceiling", self.ceiling.to_string()),
-            ("medium", self.medium.to_string()),
-            ("loss", self.loss.to_string()),
-            ("seed", self.seed.to_string()),
-        ]
+    /// The scenario in a town of voxels.
+    pub fn voxel_scenario(&self) -> voxels::Scenario {
+        voxels::Scenario {
+            range: self.range,
+            medium: self.medium,
+            loss: self.loss,
+            max_ticks: MAX_TICKS,
+            ..voxels::Scenario::new(self.robots.into(), self.seed)
+        }
+    }
+
+    /// The setup that gives this trace, as far as the menus reach.
+    pub fn of(trace: &Trace) -> Self {
+        let (scenario, limits) = (&trace.scenario, trace.scenario.limits);
+        let size = trace.extent.width;
+        let drawn = |terrain: &TerrainSource| terrain.load(size).as_ref() == Ok(&trace.terrain);
+        Self {
+            terrain: drawn_as(trace.terrain.name(), drawn),
+            size,
+            planner: scenario.planner,
+            robots: trace.robots.min(255) as u8,
+            range: limits.range as u8,
+            min_altitude: limits.min_altitude,
+            ceiling: limits.ceiling,
+            medium: scenario.medium,
+            loss: scenario.loss,
+            seed: scenario.seed,
+        }
+    }
+
+    /// Whether it gives this trace.
+    pub fn gives(&self, trace: &Trace) -> bool {
+        self.is_drawn() && self.scenario() == trace.scenario
+    }
+
+    /// As [`of`](Self::of), among voxels.
+    pub fn of_voxels(trace: &VoxelTrace) -> Self {
+        let (scenario, scene) = (&trace.scenario, &trace.scene);
+        let size = scene.extent().width;
+        let drawn = |terrain: &TerrainSource| terrain.scene(size).as_ref() == Some(scene);
+        Self {
+            terrain: drawn_as(scene.name(), drawn),
+            size,
+            robots: scenario.robots.min(255) as u8,
+            range: scenario.range,
+            medium: scenario.medium,
+            loss: scenario.loss,
+            seed: scenario.seed,
+            ..Self::default()
+        }
+    }
+
+    /// As [`gives`](Self::gives), among voxels.
+    pub fn gives_voxels(&self, trace: &VoxelTrace) -> bool {
+        self.is_drawn() && self.voxel_scenario() == trace.scenario
+    }
+
+    fn is_drawn(&self) -> bool {
+        !matches!(self.terrain, TerrainSource::File(_))
+    }
+
+    /// Whether it is flown among voxels.
+    pub fn is_of_voxels(&self) -> bool {
+        matches!(self.terrain, TerrainSource::Town(_))
+    }
+
+    /// Columns along a side: what can be drawn in time.
+    pub fn sizes(&self) -> RangeInclusive<u16> {
+        16..=if self.is_of_voxels() { 64 } else { 128 }
+    }
+
+    /// Every setting that the terrain leaves, as names and values.
+    fn settings(&self) -> Vec<(&'static str, String)> {
+        let mut settings = vec![("size", self.size.to_string())];
+        if !self.is_of_voxels() {
+            settings.push(("planner", self.planner.to_string()));
+        }
+        settings.push(("robots", self.robots.to_string()));
+        settings.push(("range", self.range.to_string()));
+        if !self.is_of_voxels() {
+            settings.push(("min-altitude", self.min_altitude.to_string()));
+            settings.push(("ceiling", self.ceiling.to_string()));
+        }
+        settings.push(("medium", self.medium.to_string()));
+        settings.push(("loss", self.loss.to_string()));
+        settings.push(("seed", self.seed.to_string()));
+        settings
     }
 
     fn terrain_name(&self) -> String {
@@ -94,7 +177,11 @@ impl SurveySetup {
     /// defaults.
     pub fn address(&self) -> String {
         let mut address = format!("terrain={}", self.terrain_name());
-        for ((name, value), (_, usual)) in self.settings().iter().zip(Self::default().settings()) {
+        let usual = Self {
+            terrain: self.terrain.clone(),
+            ..Self::default()
+        };
+        for ((name, value), (_, usual)) in self.settings().iter().zip(usual.settings()) {
             if *value != usual {
                 let _ = write!(address, "&{name}={value}");
             }
@@ -113,20 +200,25 @@ impl SurveySetup {
     /// What is wrong with it, in a sentence for the user.
     pub fn from_address(address: &str) -> Result<Self, String> {
         let mut setup = Self::default();
-        for (name, value) in parts(address) {
+        let wrong = |name, value| format!("the address: `{name}={value}` is not understood");
+        for (name, value) in parts(address).filter(|(name, _)| *name == "terrain") {
+            setup.terrain = match value.parse() {
+                Ok(TerrainSource::File(_)) | Err(_) => return Err(wrong(name, value)),
+                Ok(terrain) => terrain,
+            };
+        }
+        let known = setup.settings();
+        for (name, value) in parts(address).filter(|(name, _)| *name != "terrain") {
+            if known.iter().all(|(known, _)| *known != name) {
+                return Err(wrong(name, value));
+            }
             let done = match name {
-                "terrain" => match value.parse() {
-                    Ok(TerrainSource::File(_) | TerrainSource::Town(_)) | Err(_) => None,
-                    Ok(terrain) => {
-                        setup.terrain = terrain;
-                        Some(())
-                    }
-                },
-                "size" => within(value, SIZES, &mut setup.size),
+                "size" => within(value, setup.sizes(), &mut setup.size),
                 "planner" => Planner::from_str(value, true)
                     .ok()
                     .map(|planner| setup.planner = planner),
                 "robots" => within(value, ROBOTS, &mut setup.robots),
+                "range" => within(value, RANGES, &mut setup.range),
                 "min-altitude" => within(value, ALTITUDES, &mut setup.min_altitude),
                 "ceiling" => within(value, CEILINGS, &mut setup.ceiling),
                 "medium" => MediumKind::from_str(value, true)
@@ -136,7 +228,7 @@ impl SurveySetup {
                 "seed" => within(value, 0..=u64::MAX, &mut setup.seed),
                 _ => None,
             };
-            done.ok_or_else(|| format!("the address: `{name}={value}` is not understood"))?;
+            done.ok_or_else(|| wrong(name, value))?;
         }
         Ok(setup)
     }
@@ -152,6 +244,15 @@ impl SurveySetup {
         }
         command
     }
+}
+
+/// The terrain that was drawn under this name, if it is that.
+fn drawn_as(name: &str, is_it: impl Fn(&TerrainSource) -> bool) -> TerrainSource {
+    let drawn = name.replacen('-', ":", 1).parse().ok();
+    let is_drawn = |terrain: &TerrainSource| !matches!(terrain, TerrainSource::File(_));
+    drawn
+        .filter(|terrain| is_drawn(terrain) && is_it(terrain))
+        .unwrap_or_else(|| TerrainSource::File(name.into()))
 }
 
 /// Names and values of an address.
@@ -183,6 +284,7 @@ pub(super) mod tests {
             size: 24,
             planner: Planner::Fcao,
             robots: 2,
+            range: 6,
             min_altitude: 1.5,
             ceiling: 50.0,
             medium: MediumKind::Ideal,
@@ -191,9 +293,22 @@ pub(super) mod tests {
         }
     }
 
+    pub(in crate::survey) fn town() -> SurveySetup {
+        SurveySetup {
+            terrain: TerrainSource::Town(2),
+            size: 24,
+            robots: 3,
+            range: 6,
+            medium: MediumKind::Ideal,
+            loss: 0.25,
+            seed: 7,
+            ..SurveySetup::default()
+        }
+    }
+
     #[test]
     fn an_address_carries_everything() {
-        for setup in [SurveySetup::default(), unusual()] {
+        for setup in [SurveySetup::default(), unusual(), town()] {
             let address = setup.address();
             assert!(SurveySetup::is_meant(&address));
             assert_eq!(SurveySetup::from_address(&address), Ok(setup));
@@ -215,6 +330,11 @@ pub(super) mod tests {
             let error = SurveySetup::from_address(&format!("terrain=urban:1&{part}")).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
+        // Among voxels one planner flies, in a smaller town.
+        for part in ["planner=fcao", "ceiling=30", "size=80"] {
+            let error = SurveySetup::from_address(&format!("{part}&terrain=town:1")).unwrap_err();
+            assert!(error.contains(part), "{error}");
+        }
     }
 
     #[test]
@@ -222,7 +342,12 @@ pub(super) mod tests {
         assert_eq!(
             unusual().command(),
             "cargo run --release -- survey --terrain urban:3 --size 24 --planner fcao --robots 2 \
-             --min-altitude 1.5 --ceiling 50 --medium ideal --loss 0.25 --seed 7"
+             --range 6 --min-altitude 1.5 --ceiling 50 --medium ideal --loss 0.25 --seed 7"
+        );
+        assert_eq!(
+            town().command(),
+            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
+             --medium ideal --loss 0.25 --seed 7"
         );
     }
 }

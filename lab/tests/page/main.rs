@@ -11,7 +11,7 @@ use host_sim::chip::{Machine, Swarm};
 use host_sim::run::{self, Options};
 use host_sim::survey;
 use lab::setup::Setup;
-use lab::survey::SurveySetup;
+use lab::survey::{SurveyScene, SurveySetup};
 use serde_json::Value;
 
 fn root() -> &'static Path {
@@ -91,6 +91,35 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
     swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");
     assert_eq!(chips.digest(), here, "{address}");
+    // What flies among voxels has no image for the chip yet.
+    let address = "terrain=town:2&size=24&robots=3&range=6&loss=0.2&seed=4";
+    let here = by_command(&SurveySetup::from_address(address).unwrap().command());
+    assert_eq!(on_page(&browser, &page, address), here, "{address}");
+    assert_eq!(browser.console(), [""; 0]);
+}
+
+#[test]
+#[ignore = "needs the page and a browser: cargo xtask test --only lab-web"]
+fn dropped_traces_of_surveys_are_played_or_refused_with_a_sentence() {
+    let (page, browser) = (page(), Browser::start(1280, 800));
+    browser.open(&page);
+    browser.wait("state", |state| state == "running");
+    browser.drop_file("trace.csv", b"tick,robot,x,y,z,work\n0,0,2,2,2,9\n");
+    let error = browser.wait("error", |error| !error.is_empty());
+    assert!(error.contains("open the trace.csv"), "{error}");
+    for (address, map) in [
+        ("terrain=urban:3&size=24&robots=2", "urban-3"),
+        ("terrain=town:2&size=24&robots=2&range=6", "town-2"),
+    ] {
+        let mut flown = SurveyScene::new(SurveySetup::from_address(address).unwrap()).unwrap();
+        while flown.step() {}
+        browser.drop_file("trace.csv", &flown.file().unwrap());
+        browser.wait("map", |name| name == map);
+        browser.wait("state", |state| state == "complete");
+        assert_eq!(Some(&*browser.data("digest")), flown.digest(), "{address}");
+        assert_eq!(browser.data("ticks"), flown.steps().to_string());
+        assert_eq!(browser.data("error"), "");
+    }
     assert_eq!(browser.console(), [""; 0]);
 }
 

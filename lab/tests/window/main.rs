@@ -97,6 +97,59 @@ fn a_survey_on_a_phone() {
     compare(&mut harness, "phone-survey");
 }
 
+#[test]
+fn a_town_of_voxels_is_chosen_looked_into_and_shared() {
+    let address = "terrain=urban:1&size=40&robots=3";
+    let mut harness = harness(address, 1280.0, 800.0, Theme::Light);
+    harness.run();
+    harness.get_by_label("town with rooms").click();
+    harness.step();
+    harness.state_mut().playing = false;
+    let shown = harness.state().shown_tick();
+    play(&mut harness, 150 - shown);
+    harness.state_mut().survey.as_mut().unwrap().layers.levels = 12;
+    harness.run();
+    compare(&mut harness, "town");
+    let setup = harness.state().survey.as_ref().unwrap().setup.clone();
+    assert!(setup.is_of_voxels());
+    assert_eq!(copied(&mut harness, "Copy command"), setup.command());
+    let address = "#terrain=town:1&size=40&robots=3";
+    assert_eq!(copied(&mut harness, "Copy address"), address);
+}
+
+#[test]
+fn traces_of_surveys_are_dropped_played_and_scrubbed() {
+    for address in [
+        "terrain=urban:3&size=24&robots=2",
+        "terrain=town:2&size=24&range=6",
+    ] {
+        let mut flown = App::from_address(address);
+        while flown.tick() {}
+        let survey = flown.survey.as_ref().unwrap();
+        let (steps, file) = (survey.steps() as u32, survey.file().unwrap());
+        let mut harness = harness("map=circle", 1280.0, 900.0, Theme::Light);
+        harness.state_mut().open("trace.csv", &file);
+        assert_eq!(harness.state().report().error, "");
+        harness.state_mut().playing = false;
+        harness.run();
+        let state = harness.state();
+        assert_eq!((state.shown_tick(), state.last_tick()), (0, steps));
+        harness.get_by_label(&format!("trace digest {}", flown.report().digest));
+        harness.get_by_label("Tick").click();
+        harness.run();
+        assert_eq!(harness.state().shown_tick(), 1);
+        harness.key_press(Key::End);
+        harness.run();
+        assert_eq!(harness.state().shown_tick(), steps);
+        harness.get_by_label_contains(": complete");
+        assert_eq!(copied(&mut harness, "Copy address"), format!("#{address}"));
+        harness.get_by_label("Restart").click();
+        harness.step();
+        let state = harness.state();
+        assert!(state.playing && state.survey.as_ref().unwrap().is_replay());
+    }
+}
+
 /// Clicks a button, and returns what it has put on the clipboard.
 fn copied(harness: &mut Harness<'static, App>, button: &str) -> String {
     // What the last click has changed moves the buttons.

@@ -21,14 +21,14 @@ const IN_TURN: u8 = 8;
 const RANK: f32 = 10.0;
 
 /// Worth of a neighbourhood that is all unknown.
-const OPENNESS: f32 = 4.5;
+const OPENNESS: f32 = 3.0;
 
 /// Radius of that neighbourhood, as a share of the range.
 const NEIGHBOURHOOD: f32 = 0.6;
 
 /// Cost of a place that a rival announced, falling off over [`SPREAD`] ranges.
 const ANNOUNCED: f32 = 2.0;
-const SPREAD: f32 = 1.0;
+const SPREAD: f32 = 1.5;
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// The frontier with the lowest score among those of four tiles: the best of the

@@ -19,6 +19,10 @@ const LEAST: f32 = 0.4;
 /// trusted: something ahead cannot be seen.
 const LEAST_GAIN: f32 = 0.11;
 
+/// As long as it gains, a robot with a rival nearer than this, in ranges, makes no local
+/// steps: their views overlap, and shared out frontiers lead them apart.
+const APART: f32 = 2.0;
+
 /// Steps that a probe looks ahead.
 const LOOKAHEAD: u8 = 4;
 
@@ -48,7 +52,8 @@ const NEIGHBOURS: usize = 6;
 const ROWS: usize = HISTORY + HEADINGS as usize;
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
-    /// The best step into a swath of unknown surface, if there is one.
+    /// The best step into a swath of unknown surface, if there is one and no rival is
+    /// about it too.
     ///
     /// Cost: a [`Vicinity`], 64 rows for each rival, 8 probes of 4 discs; then 48
     /// candidates, each of them 4 discs or 20 terms of the cubic.
@@ -56,7 +61,8 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     pub(super) fn best_swath(&mut self, gain: f32) -> Option<Point> {
         let step = self.config.limits.step;
         let trusted = gain >= LEAST_GAIN * 2.0 * self.config.limits.range * step;
-        if core::mem::take(&mut self.local) && !trusted {
+        let in_company = gain > 0.0 && self.is_among_rivals();
+        if core::mem::take(&mut self.local) && !trusted || in_company {
             return None;
         }
         let vicinity = self.own_vicinity();
@@ -93,6 +99,14 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         };
         self.local = to.is_some();
         to
+    }
+
+    fn is_among_rivals(&self) -> bool {
+        let here = self.knowledge.position();
+        let apart = APART * self.config.limits.range;
+        self.knowledge
+            .rivals()
+            .any(|peer| peer.status.position.plan_distance(here) < apart)
     }
 
     /// The vicinity without what is nearer to others; of many, to the nearest six: the

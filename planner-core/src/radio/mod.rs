@@ -10,11 +10,14 @@ mod frame;
 mod link;
 mod outbox;
 mod surface_frame;
+mod voxel_frame;
 
 pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 pub use link::{GridId, Heard, Key, Link, LinkConfig};
 pub(crate) use surface_frame::position_on_wire;
 pub use surface_frame::{HeightRecord, SurfaceFrame};
+pub(crate) use voxel_frame::MAX_PATCHES;
+pub use voxel_frame::VoxelFrame;
 
 #[cfg(test)]
 mod tests;

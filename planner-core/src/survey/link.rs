@@ -1,4 +1,4 @@
-//! One robot's end of the radio in 3-D: numbering, budget, and the turn of the map.
+//! One robot's end of the radio over a surface, and the turn of its map.
 
 use crate::cell::Extent;
 use crate::planner::RobotId;
@@ -6,18 +6,14 @@ use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, SurfaceFrame, positi
 use crate::surface::Tile;
 
 use super::Status;
+use super::sender::Sender;
 
 /// Every so many frames one begins with the turn, whatever else waits.
 const TURN: u8 = 4;
 
 #[derive(Clone, Debug)]
 pub(super) struct Link {
-    config: LinkConfig,
-    grid: GridId,
-    id: RobotId,
-    sequence: u16,
-    /// Bytes that may be sent now.
-    credit: u16,
+    sender: Sender,
     /// The tile of the own map that is sent in turn, and the columns of it that were
     /// not sent yet.
     turn: Tile,
@@ -29,11 +25,7 @@ impl Link {
     /// A link that says nothing; all zero.
     pub(super) const fn vacant() -> Self {
         Self {
-            config: LinkConfig::vacant(),
-            grid: GridId(0),
-            id: RobotId(0),
-            sequence: 0,
-            credit: 0,
+            sender: Sender::vacant(),
             turn: Tile { x: 0, y: 0 },
             left: 0,
             since_turn: 0,
@@ -41,37 +33,30 @@ impl Link {
     }
 
     pub(super) fn new(config: LinkConfig, id: RobotId, extent: Extent) -> Self {
+        let grid = GridId::of(extent, config.origin_mm, config.cell_mm);
         Self {
-            config,
-            grid: GridId::of(extent, config.origin_mm, config.cell_mm),
-            id,
-            sequence: 0,
-            credit: config.bytes_per_tick,
+            sender: Sender::new(config, grid, id),
             turn: Tile { x: 0, y: 0 },
             left: !0,
             since_turn: 0,
         }
     }
 
-    /// Another step: the budget of bytes grows, up to one step's or one frame.
+    /// Another step: the budget of bytes grows.
     pub(super) fn tick(&mut self) {
-        let limit = self.config.bytes_per_tick.max(MAX_LEN as u16);
-        self.credit = self
-            .credit
-            .saturating_add(self.config.bytes_per_tick)
-            .min(limit);
+        self.sender.tick();
     }
 
     /// A frame without records, if the budget allows one.
     pub(super) fn begin_frame(&mut self, status: Status) -> Option<SurfaceFrame> {
-        if usize::from(self.credit) < MAX_LEN {
+        if !self.sender.may_send() {
             return None;
         }
         self.since_turn = (self.since_turn + 1) % TURN;
         Some(SurfaceFrame {
-            grid: self.grid,
-            sender: self.id,
-            sequence: self.sequence,
+            grid: self.sender.grid,
+            sender: self.sender.id,
+            sequence: self.sender.sequence,
             position: position_on_wire(status.position),
             target: status.target,
             stopped: status.stopped,
@@ -102,16 +87,15 @@ impl Link {
 
     /// Writes `frame`, and counts it.
     pub(super) fn send(&mut self, frame: &SurfaceFrame, buffer: &mut [u8; MAX_LEN]) -> usize {
-        let length = frame.encode(self.config.key.as_ref(), buffer);
-        self.sequence = self.sequence.wrapping_add(1);
-        self.credit = self.credit.saturating_sub(length as u16);
+        let length = frame.encode(self.sender.key(), buffer);
+        self.sender.sent(length);
         length
     }
 
     /// Reads another robot's frame.
     pub(super) fn read(&self, bytes: &[u8], extent: Extent) -> Result<SurfaceFrame, FrameError> {
-        let frame = SurfaceFrame::decode(bytes, self.config.key.as_ref(), self.grid, extent)?;
-        if frame.sender == self.id {
+        let frame = SurfaceFrame::decode(bytes, self.sender.key(), self.sender.grid, extent)?;
+        if frame.sender == self.sender.id {
             return Err(FrameError::Own);
         }
         Ok(frame)

@@ -15,13 +15,16 @@ mod link;
 mod news;
 mod peers;
 mod rescue;
+mod sender;
 
 pub use knowledge::{Knowledge, SetupError};
 pub use news::MAX_RANGE;
 pub use peers::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use rescue::PATIENCE;
 
+pub(crate) use peers::Peers;
 pub(crate) use rescue::Rescue;
+pub(crate) use sender::Sender;
 
 use core::fmt;
 

@@ -10,11 +10,11 @@ pub const PEER_MEMORY: u8 = 15;
 
 /// Another robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peer {
+pub struct Peer<S = Status> {
     /// Its name.
     pub id: u8,
     /// What it said.
-    pub status: Status,
+    pub status: S,
     /// Steps since.
     pub age: u8,
     /// Number of the frame that it said it in; 0 where there are no frames.
@@ -23,23 +23,23 @@ pub struct Peer {
 
 /// At most [`MAX_PEERS`] robots, each once.
 #[derive(Clone, Debug)]
-pub(crate) struct Peers([Place; MAX_PEERS]);
+pub(crate) struct Peers<S = Status>([Place<S>; MAX_PEERS]);
 
 /// Room for one. As an `Option`, but empty is all zero: then a `static` planner
 /// takes no flash.
 #[repr(u8)]
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum Place<S> {
     Empty = 0,
-    Taken(Peer) = 1,
+    Taken(Peer<S>) = 1,
 }
 
-impl Peers {
-    pub(super) const fn new() -> Self {
+impl<S: Copy> Peers<S> {
+    pub(crate) const fn new() -> Self {
         Self([Place::Empty; MAX_PEERS])
     }
 
-    pub(super) fn iter(&self) -> impl Iterator<Item = &Peer> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Peer<S>> {
         self.0.iter().filter_map(|place| match place {
             Place::Empty => None,
             Place::Taken(peer) => Some(peer),
@@ -47,21 +47,21 @@ impl Peers {
     }
 
     /// The same by frame number `sequence`; older frames than the last are ignored.
-    pub(super) fn hear_frame(&mut self, id: u8, status: Status, sequence: u16) {
+    pub(crate) fn hear_frame(&mut self, id: u8, status: S, sequence: u16) {
         let heard = self.iter().find(|peer| peer.id == id);
-        let is_news = |peer: &Peer| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
+        let is_news = |peer: &Peer<S>| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
         if heard.is_none_or(is_news) {
             self.put(id, status, sequence);
         }
     }
 
     /// Replaces what `id` said before, or else takes an empty or the oldest place.
-    pub(super) fn hear(&mut self, id: u8, status: Status) {
+    pub(crate) fn hear(&mut self, id: u8, status: S) {
         self.put(id, status, 0);
     }
 
-    fn put(&mut self, id: u8, status: Status, sequence: u16) {
-        let staleness = |place: &Place| match place {
+    fn put(&mut self, id: u8, status: S, sequence: u16) {
+        let staleness = |place: &Place<S>| match place {
             Place::Taken(peer) if peer.id == id => u16::MAX,
             Place::Taken(peer) => u16::from(peer.age),
             Place::Empty => u16::MAX - 1,
@@ -77,7 +77,7 @@ impl Peers {
     }
 
     /// One step passes.
-    pub(super) fn age(&mut self) {
+    pub(crate) fn age(&mut self) {
         for place in &mut self.0 {
             if let Place::Taken(peer) = place {
                 peer.age += 1;

@@ -229,6 +229,11 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
         self.inside(tile, z) & !(here | neighbours_of(here, around) | above | below)
     }
 
+    /// The unknown voxels of a tile of a level.
+    pub(crate) fn unknown(&self, tile: Tile, z: u8) -> u64 {
+        self.inside(tile, z) & !self.known.word(tile, z)
+    }
+
     /// The voxels of a tile of a level that lie in the box.
     pub(crate) fn inside(&self, tile: Tile, z: u8) -> u64 {
         if z < self.levels {

@@ -1,14 +1,9 @@
 //! The nearest pose far away that is not done: a wave over all poses, in slices.
 
-use super::{VoxelSurvey, WAY};
+use super::gain::RAY;
+use super::{SLICE, VoxelSurvey, WAY};
 use crate::surface::{Tile, neighbours_of};
 use crate::volume::{Layer, Volume, Voxel, around};
-
-/// Words that the wave washes in a step.
-const SLICE: u32 = 1024;
-
-/// Poses whose view is looked at in a step.
-const VIEWS: u32 = 8;
 
 /// What a step of the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +39,10 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     cursor: (Tile, u8),
     /// Whether anything has become wet in it.
     grows: bool,
+    /// Poses of the word at the cursor that are left to rivals.
+    passed: u64,
+    /// The first pose of all that shows something and is left to a rival.
+    spare: Option<Voxel>,
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
@@ -54,6 +53,8 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             layer: 1,
             cursor: (Tile { x: 0, y: 0 }, 0),
             grows: false,
+            passed: 0,
+            spare: None,
         }
     }
 
@@ -113,8 +114,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     fn spread(&mut self, known: u32) -> Found {
-        let mut views = 0;
-        for _ in 0..SLICE {
+        while self.work < SLICE {
             self.work = self.work.saturating_add(1);
             self.far.wash(&self.volume);
             let (tile, z) = self.far.cursor;
@@ -123,28 +123,41 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 .layers
                 .get(self.far.layer)
                 .map_or(0, |l| l.word(tile, z));
-            let open = wet & !self.done.word(tile, z);
+            let open = wet & !self.done.word(tile, z) & !self.far.passed;
             if open != 0 {
-                // The cursor stays until all of them are done.
-                if views == VIEWS {
-                    return Found::Searching;
-                }
-                views += 1;
+                // The cursor stays until all of them are done or passed.
                 let cell = tile.cell(open.trailing_zeros());
                 let pose = Voxel::new(cell.x, cell.y, i16::from(z));
-                if self.gain(pose) > 0 {
-                    self.goal = pose;
-                    self.way.clear();
-                    self.far.stage = Stage::Back(pose);
-                    return Found::Searching;
+                self.work = self.work.saturating_add(1);
+                let is_a_rivals = self.is_a_rivals(pose);
+                // Of what is left to rivals one is enough to know of.
+                let is_looked_at = !is_a_rivals || self.far.spare.is_none();
+                if is_looked_at && self.gain(pose, 1) > 0 {
+                    if !is_a_rivals {
+                        return self.found(pose);
+                    }
+                    self.far.spare = Some(pose);
+                }
+                if is_a_rivals {
+                    self.far.passed |= 1 << open.trailing_zeros();
                 }
                 continue;
             }
+            self.far.passed = 0;
             self.far.cursor = self.volume.after(tile, z);
             if self.far.cursor == (Tile { x: 0, y: 0 }, 0) {
                 if !self.far.grows {
-                    // What was learnt meanwhile may have opened a way.
                     self.far.stage = Stage::Idle;
+                    if let Some(spare) = self.far.spare.take() {
+                        // Rivals may be lost: what they leave over is nobody's. Unless
+                        // it shows nothing by now: then the search begins anew.
+                        return if self.gain(spare, 1) > 0 {
+                            self.found(spare)
+                        } else {
+                            Found::Searching
+                        };
+                    }
+                    // What was learnt meanwhile may have opened a way.
                     return if known == self.volume.known_voxels() {
                         Found::Nothing
                     } else {
@@ -158,11 +171,18 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         Found::Searching
     }
 
+    fn found(&mut self, pose: Voxel) -> Found {
+        self.goal = pose;
+        self.way.clear();
+        self.far.stage = Stage::Back(pose);
+        Found::Searching
+    }
+
     /// Goes back from the goal to the robot; of a long way, its beginning is kept.
     fn follow_back(&mut self, from: Voxel) -> Found {
         let mut at = from;
-        for _ in 0..SLICE {
-            self.work = self.work.saturating_add(1);
+        while self.work < SLICE {
+            self.work = self.work.saturating_add(RAY);
             if at == self.position {
                 self.far.stage = Stage::Idle;
                 return Found::Way;

@@ -11,8 +11,14 @@ const POSES: usize = 512;
 /// Those of them whose view is looked at in one step.
 const VIEWS: usize = 24;
 
+/// Unknown voxels in sight that are counted.
+const ENOUGH: u32 = 64;
+
 /// Half of the side of the window that they lie in.
 const WINDOW: i16 = 16;
+
+/// What a view is worth to which a rival is nearer.
+const RIVALS_SHARE: f32 = 0.25;
 
 /// Steps that a flight costs beside its length.
 const START: u32 = 2;
@@ -30,39 +36,19 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// all poses near by are done.
     pub(super) fn look_near(&mut self) -> Option<Action> {
         let places = self.places();
-        let open = |place: &&Place| !self.done.get(place.at);
-        let number = places.iter().filter(open).count();
-        if number == 0 {
-            return None;
-        }
-        let stride = number.div_ceil(VIEWS);
-        let chosen: Vec<(u16, Place), VIEWS> = (0u16..)
-            .zip(&places)
-            .filter(|(_, place)| !self.done.get(place.at))
-            .step_by(stride)
-            .map(|(number, &place)| (number, place))
-            .take(VIEWS)
-            .collect();
-        let mut best: Option<(f32, u16)> = None;
-        for (number, place) in chosen {
-            let gain = self.gain(place.at);
-            if gain == 0 {
-                continue;
+        let best = loop {
+            let is_open = |place: &&Place| !self.done.get(place.at);
+            let open = places.iter().filter(is_open).count();
+            if open == 0 {
+                return None;
             }
-            let own = place.at.distance_squared(self.position);
-            let is_nearer = |voxel: Voxel| place.at.distance_squared(voxel) < own;
-            let is_rivals = self
-                .rivals
-                .iter()
-                .any(|&(_, at, goal)| is_nearer(at) || is_nearer(goal));
-            let share = if is_rivals { 0.25 } else { 1.0 };
-            let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
-            if best.is_none_or(|(most, _)| score > most) {
-                best = Some((score, number));
+            let best = self.best_of(&places, open.div_ceil(VIEWS));
+            // Views that show nothing are done with: the others are looked at next.
+            if best.is_some() || self.work >= super::SLICE {
+                break best;
             }
-        }
-        let Some((_, mut number)) = best else {
-            // The views looked at showed nothing: the others are looked at next.
+        };
+        let Some(mut number) = best else {
             return Some(Action::Hover);
         };
         self.way.clear();
@@ -83,6 +69,34 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             number = place.before;
         }
         Some(self.follow().unwrap_or(Action::Hover))
+    }
+
+    /// The number of the best of `places`, looked at in strides.
+    fn best_of(&mut self, places: &[Place], stride: usize) -> Option<u16> {
+        let chosen: Vec<(u16, Place), VIEWS> = (0u16..)
+            .zip(places)
+            .filter(|(_, place)| !self.done.get(place.at))
+            .step_by(stride)
+            .map(|(number, &place)| (number, place))
+            .take(VIEWS)
+            .collect();
+        let mut best: Option<(f32, u16)> = None;
+        for (number, place) in chosen {
+            let gain = self.gain(place.at, ENOUGH);
+            if gain == 0 {
+                continue;
+            }
+            let share = if self.is_a_rivals(place.at) {
+                RIVALS_SHARE
+            } else {
+                1.0
+            };
+            let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
+            if best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, number));
+            }
+        }
+        best.map(|(_, number)| number)
     }
 
     /// The poses around the robot, nearest first, the robot's own in front.

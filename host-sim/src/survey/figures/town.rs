@@ -40,15 +40,11 @@ pub(super) fn town() -> Result<Figure, SetupError> {
         let nodes = |tick| octree(&trace, tick).nodes();
         heights.push(curve(planner.to_string(), colour(planner), end, &nodes));
     }
-    let scenario = voxels::Scenario {
-        robots: 2,
-        range: 8,
-        loss: 0.0,
-        seed: 1,
-        max_ticks: 20_000,
-    };
-    let trace = voxels::run(&voxels::Scene::town(1, VOXELS), &scenario)
-        .expect("there is room for robots in a town");
+    let trace = voxels::run(
+        &voxels::Scene::town(1, VOXELS),
+        &voxels::Scenario::new(2, 1),
+    )
+    .expect("there is room for robots in a town");
     let end = trace.ticks_to(1.0).unwrap_or(trace.seen.len() as u32);
     let nodes = |tick| trace.octree(tick).nodes();
     let inside = curve("voxel-survey".into(), METHODS.len(), end, &nodes);

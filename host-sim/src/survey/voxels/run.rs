@@ -1,18 +1,19 @@
 //! A run: sense, share, decide in turn, fly; until every robot has stopped.
 
 use std::collections::{BTreeSet, HashSet};
-use std::fmt::Write as _;
-use std::io;
 
 use planner_core::Point;
+use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
-use sha2::{Digest, Sha256};
 
 use super::scene::Scene;
+use crate::fleet::Sent;
+use crate::medium::MediumKind;
+use crate::survey::DEFAULT_BYTE_BUDGET;
 use crate::survey::draw::{Block, oblique};
 use crate::survey::octree::OcTree;
 
@@ -22,18 +23,37 @@ type Robot = VoxelSurvey<8, 8, 24>;
 const IN_TURN: usize = 16;
 
 /// What a run is a function of, beside the scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scenario {
     /// Number of robots.
     pub robots: usize,
     /// Sensor range in voxels.
     pub range: u8,
+    /// What carries what robots tell each other.
+    pub medium: MediumKind,
+    /// Bytes that a robot may send by radio in a step on average.
+    pub byte_budget: u16,
     /// Share of messages lost, 0 to 1.
     pub loss: f64,
     /// Seed of the losses.
     pub seed: u64,
     /// Steps after which the run is given up.
     pub max_ticks: u32,
+}
+
+impl Scenario {
+    /// Range 8, no losses, and robots that share everything at once.
+    pub fn new(robots: usize, seed: u64) -> Self {
+        Self {
+            robots,
+            range: 8,
+            medium: MediumKind::Ideal,
+            byte_budget: DEFAULT_BYTE_BUDGET,
+            loss: 0.0,
+            seed,
+            max_ticks: 20_000,
+        }
+    }
 }
 
 /// A whole run.
@@ -47,6 +67,8 @@ pub struct VoxelTrace {
     pub ways: Vec<Vec<Voxel>>,
     /// Work of each decision.
     pub work: Vec<u32>,
+    /// What each robot sent in the step of each decision.
+    pub sent: Vec<Sent>,
     /// Voxels in the order in which they were seen, each with the step and with whether
     /// it is occupied.
     pub found: Vec<(u32, Voxel, bool)>,
@@ -61,8 +83,18 @@ pub struct VoxelTrace {
     pub violations: u32,
 }
 
-/// What `eye` sees within `range` voxels.
+/// What `eye` sees within `range` voxels, each with whether it is occupied.
 pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
+    look_for(scene, eye, range, |_, _| true)
+}
+
+/// What `eye` sees of what is wanted.
+fn look_for(
+    scene: &Scene,
+    eye: Voxel,
+    range: u8,
+    is_wanted: impl Fn(Voxel, bool) -> bool,
+) -> Vec<(Voxel, bool)> {
     let reach = i16::from(range);
     let mut seen = Vec::new();
     for z in eye.z - reach..=eye.z + reach {
@@ -71,6 +103,7 @@ pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
                 let voxel = Voxel::new(x, y, z);
                 if let Some(occupied) = scene.is_occupied(voxel)
                     && eye.distance_squared(voxel) <= u32::from(range).pow(2)
+                    && is_wanted(voxel, occupied)
                     && in_sight(eye, voxel, |at| scene.is_occupied(at) != Some(true))
                 {
                     seen.push((voxel, occupied));
@@ -81,80 +114,128 @@ pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
     seen
 }
 
-/// Runs `scenario` in `scene`. Robots start above the ground near the north-west
-/// corner, or wherever there is room first.
+/// Runs `scenario` in `scene`.
 ///
 /// # Errors
-/// There is no room for a robot.
+/// As [`Simulation::new`].
 pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
-    let start = scene
-        .voxels()
-        .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
-        .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
-        .ok_or("there is no room for a robot")?;
-    let config = Config {
-        range: scenario.range,
-    };
-    let mut robots = Vec::new();
-    for _ in 0..scenario.robots {
-        let robot = Robot::new(scene.extent(), scene.levels(), config);
-        robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+    let mut run = Simulation::new(scene, scenario)?;
+    while run.step() {}
+    Ok(run.trace)
+}
+
+/// A run that goes on step by step, for whoever wants to watch.
+pub struct Simulation {
+    scene: Scene,
+    robots: Vec<Box<Robot>>,
+    trace: VoxelTrace,
+    medium: Medium,
+    visible: HashSet<Voxel>,
+    known: HashSet<Voxel>,
+    /// Occupied voxels seen.
+    seen: u32,
+    now: u32,
+}
+
+impl Simulation {
+    /// A run before its first step. Robots start above the ground near the north-west
+    /// corner, or wherever there is room first.
+    ///
+    /// # Errors
+    /// There is no room for a robot.
+    pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, String> {
+        let start = scene
+            .voxels()
+            .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
+            .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
+            .ok_or("there is no room for a robot")?;
+        let config = Config {
+            range: scenario.range,
+            link: LinkConfig {
+                bytes_per_tick: scenario.byte_budget,
+                ..LinkConfig::new()
+            },
+        };
+        let mut robots = Vec::new();
+        for id in 0..scenario.robots {
+            let robot = Robot::new(scene.extent(), scene.levels(), config, id as u8);
+            robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+        }
+        let visible = visible(scene, start, scenario.range);
+        let trace = VoxelTrace {
+            scenario: scenario.clone(),
+            scene: scene.clone(),
+            ways: vec![vec![start]; scenario.robots],
+            work: Vec::new(),
+            sent: Vec::new(),
+            found: Vec::new(),
+            visible: visible.len() as u32,
+            seen: Vec::new(),
+            all_stopped: false,
+            violations: 0,
+        };
+        Ok(Self {
+            scene: scene.clone(),
+            robots,
+            trace,
+            medium: Medium {
+                loss: scenario.loss,
+                faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+                turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
+            },
+            visible,
+            known: HashSet::new(),
+            seen: 0,
+            now: 0,
+        })
     }
-    let visible = visible(scene, start, scenario.range);
-    let mut trace = VoxelTrace {
-        scenario: scenario.clone(),
-        scene: scene.clone(),
-        ways: vec![vec![start]; scenario.robots],
-        work: Vec::new(),
-        found: Vec::new(),
-        visible: visible.len() as u32,
-        seen: Vec::new(),
-        all_stopped: false,
-        violations: 0,
-    };
-    let mut faults = ChaCha8Rng::seed_from_u64(scenario.seed);
-    let mut arrives = move || {
-        scenario.loss <= 0.0 || f64::from(faults.next_u32()) / f64::from(u32::MAX) >= scenario.loss
-    };
-    let mut known: HashSet<Voxel> = HashSet::new();
-    let mut seen = 0;
-    let mut turns = vec![(Tile { x: 0, y: 0 }, 0u8); scenario.robots];
-    for now in 0.. {
-        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
-        for (i, robot) in robots.iter_mut().enumerate() {
-            let at = *trace.ways[i].last().expect("it starts somewhere");
+
+    /// What has happened so far.
+    pub fn trace(&self) -> &VoxelTrace {
+        &self.trace
+    }
+
+    /// One step of the fleet; false if the run is over.
+    pub fn step(&mut self) -> bool {
+        let Self {
+            scene,
+            robots,
+            trace,
+            medium,
+            visible,
+            known,
+            seen,
+            now,
+        } = self;
+        let scenario = trace.scenario.clone();
+        let mut views = Vec::new();
+        for (robot, way) in robots.iter_mut().zip(&trace.ways) {
+            let at = *way.last().expect("it starts somewhere");
             let view = look(scene, at, scenario.range);
-            let mut touched = BTreeSet::new();
             for &(voxel, occupied) in &view {
                 if known.insert(voxel) {
-                    trace.found.push((now, voxel, occupied));
-                    seen += u32::from(visible.contains(&voxel));
+                    trace.found.push((*now, voxel, occupied));
+                    *seen += u32::from(visible.contains(&voxel));
                 }
-                touched.insert((Tile::of(voxel.cell()).expect("inside"), voxel.z as u8));
             }
             robot.observe(at, &view);
-            for _ in 0..IN_TURN {
-                touched.insert(turns[i]);
-                turns[i] = robot.volume().after(turns[i].0, turns[i].1);
-            }
-            let patches = touched
-                .into_iter()
-                .map(|(tile, z)| robot.volume().patch(tile, z));
-            messages.push(patches.collect());
+            views.push(view);
         }
-        for (from, message) in messages.iter().enumerate() {
-            for (to, robot) in robots.iter_mut().enumerate() {
-                if to != from && arrives() {
-                    for patch in message {
-                        robot.merge(patch);
-                    }
+        let mut sent = vec![Sent::default(); robots.len()];
+        match scenario.medium {
+            MediumKind::Ideal => medium.share_maps(robots, &views),
+            MediumKind::Radio => {
+                let frames = usize::from(scenario.byte_budget) / MAX_LEN;
+                // One is left for after the flight.
+                for (i, sent) in sent.iter_mut().enumerate() {
+                    medium.transmit(robots, i, frames.saturating_sub(1).max(1), sent);
                 }
             }
         }
-        trace.seen.push(seen);
+        trace.seen.push(*seen);
         let mut going = false;
         let mut next = Vec::new();
-        for i in 0..robots.len() {
+        for (i, sent) in sent.iter_mut().enumerate() {
             let at = *trace.ways[i].last().expect("as above");
             let action = robots[i].tick();
             trace.work.push(robots[i].work());
@@ -166,34 +247,107 @@ pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
             let is_allowed = scene.is_pose(to) && at.distance_squared(to) <= 1;
             trace.violations += u32::from(!is_allowed);
             next.push(to);
-            let goal = robots[i].goal();
-            for (other, robot) in robots.iter_mut().enumerate() {
-                if other != i && arrives() {
-                    robot.hear(i as u8, to, goal);
-                }
+            match scenario.medium {
+                MediumKind::Ideal => medium.share_status(robots, i),
+                MediumKind::Radio => medium.transmit(robots, i, 1, sent),
             }
         }
+        trace.sent.append(&mut sent);
         trace.all_stopped = !going;
-        if !going || now >= scenario.max_ticks {
-            break;
+        if !going || *now >= scenario.max_ticks {
+            return false;
         }
         for (way, to) in trace.ways.iter_mut().zip(next) {
             way.push(to);
         }
+        *now += 1;
+        true
     }
-    Ok(trace)
+}
+
+/// What carries what robots tell each other.
+struct Medium {
+    loss: f64,
+    faults: ChaCha8Rng,
+    /// Where each robot stands that tells its map word by word.
+    turns: Vec<(Tile, u8)>,
+}
+
+impl Medium {
+    fn arrives(&mut self) -> bool {
+        self.loss <= 0.0 || f64::from(self.faults.next_u32()) / f64::from(u32::MAX) >= self.loss
+    }
+
+    /// Everything that each robot sees to everybody, however much it is, and a few words
+    /// of its map.
+    fn share_maps(&mut self, robots: &mut [Box<Robot>], views: &[Vec<(Voxel, bool)>]) {
+        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
+        for ((robot, view), turn) in robots.iter().zip(views).zip(&mut self.turns) {
+            let tile = |voxel: Voxel| Tile::of(voxel.cell()).expect("inside");
+            let mut touched: BTreeSet<(Tile, u8)> = view
+                .iter()
+                .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
+                .collect();
+            for _ in 0..IN_TURN {
+                touched.insert(*turn);
+                *turn = robot.volume().after(turn.0, turn.1);
+            }
+            let patches = touched
+                .into_iter()
+                .map(|(tile, z)| robot.volume().patch(tile, z));
+            messages.push(patches.collect());
+        }
+        for (from, message) in messages.iter().enumerate() {
+            for (to, robot) in robots.iter_mut().enumerate() {
+                if to != from && self.arrives() {
+                    for patch in message {
+                        robot.merge(patch);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where robot `from` is and goes, to everybody.
+    fn share_status(&mut self, robots: &mut [Box<Robot>], from: usize) {
+        let status = robots[from].status();
+        for (to, robot) in robots.iter_mut().enumerate() {
+            if to != from && self.arrives() {
+                robot.hear(from as u8, status);
+            }
+        }
+    }
+
+    /// Robot `from` sends as many frames as its budget allows, at most `most`.
+    fn transmit(&mut self, robots: &mut [Box<Robot>], from: usize, most: usize, sent: &mut Sent) {
+        let mut frame = [0; MAX_LEN];
+        for _ in 0..most {
+            let Some(length) = robots[from].transmit(&mut frame) else {
+                break;
+            };
+            sent.frames += 1;
+            sent.bytes += length as u32;
+            for (to, robot) in robots.iter_mut().enumerate() {
+                if to != from && self.arrives() {
+                    let heard = robot.receive(&frame[..length]);
+                    heard.expect("robots understand each other");
+                }
+            }
+        }
+    }
 }
 
 /// The occupied voxels that can be seen from any place that can be reached from `start`.
-fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
+pub(super) fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
     let mut reached = vec![start];
     let mut is_reached: HashSet<Voxel> = reached.iter().copied().collect();
-    let mut visible = HashSet::new();
+    let mut visible: HashSet<Voxel> = HashSet::new();
     let mut next = 0;
     while let Some(&at) = reached.get(next) {
         next += 1;
-        let occupied = look(scene, at, range).into_iter().filter(|seen| seen.1);
-        visible.extend(occupied.map(|(voxel, _)| voxel));
+        let is_new = |voxel, occupied| occupied && !visible.contains(&voxel);
+        let new = look_for(scene, at, range, is_new);
+        visible.extend(new.into_iter().map(|(voxel, _)| voxel));
         for beside in at.beside() {
             if scene.is_pose(beside) && is_reached.insert(beside) {
                 reached.push(beside);
@@ -242,34 +396,5 @@ impl VoxelTrace {
             .collect();
         let highest = f32::from(self.scene.levels());
         oblique(self.scene.extent(), highest, blocks.collect(), &ways)
-    }
-
-    /// Writes `tick,robot,x,y,z,work` line by line: where each robot decided.
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
-        writeln!(to, "tick,robot,x,y,z,work")?;
-        let robots = self.ways.len();
-        for (i, work) in self.work.iter().enumerate() {
-            let (tick, robot) = (i / robots, i % robots);
-            let Voxel { x, y, z } = self.ways[robot][tick];
-            writeln!(to, "{tick},{robot},{x},{y},{z},{work}")?;
-        }
-        Ok(())
-    }
-
-    /// 16 hex digits that differ if any line of the trace does.
-    pub fn digest(&self) -> String {
-        let mut bytes = Vec::new();
-        self.write(&mut bytes).expect("a Vec takes everything");
-        let digest = Sha256::digest(&bytes);
-        digest
-            .iter()
-            .take(8)
-            .fold(String::new(), |mut digits, byte| {
-                write!(digits, "{byte:02x}").expect("a String takes everything");
-                digits
-            })
     }
 }

@@ -15,7 +15,7 @@ pub struct Scene {
 }
 
 /// Columns along a side of the largest scene.
-const LARGEST: u16 = 64;
+pub(super) const LARGEST: u16 = 64;
 
 impl Scene {
     /// A scene in which `is_occupied` says where something is.

@@ -1,0 +1,298 @@
+//! Traces out of their files. What was seen is not in a file: it follows from where the
+//! robots were, so they look once more.
+
+use std::io::BufRead;
+
+use planner_core::surface::Height;
+use planner_core::survey::{Limits, MAX_RANGE, Stop};
+use planner_core::{Cell, Extent, Point};
+use serde::Deserialize;
+
+use super::{Deed, KIND, Record, Trace, digest};
+use crate::fleet::Sent;
+use crate::medium::MediumKind;
+use crate::survey::terrain_source::LARGEST;
+use crate::survey::{Kill, Planner, Scenario, Terrain, look};
+use crate::trace::TraceError;
+
+#[derive(Deserialize)]
+struct Header {
+    planner: Planner,
+    range: f32,
+    step: f32,
+    min_altitude: f32,
+    ceiling: f32,
+    separation: f32,
+    medium: MediumKind,
+    byte_budget: u16,
+    loss: f64,
+    skip: f64,
+    seed: u64,
+    max_ticks: u32,
+    starts: Vec<[f32; 3]>,
+    /// (robot, step)
+    deaths: Vec<(usize, u32)>,
+    world: Heights,
+}
+
+#[derive(Deserialize)]
+struct Heights {
+    name: String,
+    /// In quarters of a cell, row by row.
+    heights: Vec<Vec<u8>>,
+}
+
+impl Trace {
+    /// Reads a trace, and checks that it is whole. In the last step of a run that was
+    /// given up, robots that slept are taken to look too.
+    ///
+    /// Cost: a look for each record.
+    ///
+    /// # Errors
+    /// What is wrong, and in which line.
+    pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
+        let (header, records) = KIND.read::<Header, _>(from, parse_record, digest)?;
+        let mut replay = Replay::new(header)?;
+        let robots = replay.at.len();
+        if let Some(record) = records.iter().find(|it| usize::from(it.robot) >= robots) {
+            let reason = format!("robot {} has no start", record.robot);
+            return Err(TraceError::Survey(reason));
+        }
+        for step in records.chunk_by(|a, b| a.tick == b.tick) {
+            replay.step(step);
+        }
+        let mut trace = replay.finish(records.last().map_or(0, |last| last.tick + 1));
+        trace.records = records;
+        Ok(trace)
+    }
+}
+
+/// A run whose decisions are known.
+struct Replay {
+    trace: Trace,
+    /// Columns that anybody has seen, row by row.
+    known: Vec<bool>,
+    at: Vec<Point>,
+    has_stopped: Vec<bool>,
+}
+
+impl Replay {
+    fn new(header: Header) -> Result<Self, TraceError> {
+        let range = header.range;
+        if !(range > 0.0 && range <= MAX_RANGE) {
+            let reason = format!("a range of {range} cells is not above 0 and at most {MAX_RANGE}");
+            return Err(TraceError::Survey(reason));
+        }
+        let robots = header.starts.len();
+        let starts = header.starts.into_iter();
+        let starts: Vec<_> = starts.map(|[x, y, z]| Point { x, y, z }).collect();
+        let deaths = header.deaths.into_iter();
+        let scenario = Scenario {
+            planner: header.planner,
+            robots,
+            limits: Limits {
+                range,
+                step: header.step,
+                min_altitude: header.min_altitude,
+                ceiling: header.ceiling,
+                separation: header.separation,
+            },
+            seed: header.seed,
+            medium: header.medium,
+            byte_budget: header.byte_budget,
+            loss: header.loss,
+            skip: header.skip,
+            kills: deaths.map(|(robot, step)| Kill { robot, step }).collect(),
+            max_ticks: header.max_ticks,
+        };
+        let terrain = header.world.terrain()?;
+        Ok(Self {
+            known: vec![false; terrain.extent().cells() as usize],
+            at: starts.clone(),
+            has_stopped: vec![false; robots],
+            trace: Trace::new(&terrain, &scenario, starts),
+        })
+    }
+
+    /// One step of the fleet.
+    fn step(&mut self, records: &[Record]) {
+        let tick = records[0].tick;
+        // In a step without a record, every robot slept.
+        while self.trace.seen.len() < tick as usize {
+            self.trace.seen.push(self.trace.found.len() as u32);
+        }
+        self.look(tick, records.iter().map(|it| usize::from(it.robot)));
+        for record in records {
+            let robot = usize::from(record.robot);
+            let from = std::mem::replace(&mut self.at[robot], record.at);
+            if record.deed == Deed::Flew {
+                let Trace {
+                    terrain,
+                    scenario,
+                    safety,
+                    ..
+                } = &mut self.trace;
+                safety.check_flight(terrain, &scenario.limits, from, record.at);
+            }
+            self.has_stopped[robot] = matches!(record.deed, Deed::Stopped(_));
+        }
+        let alive: Vec<_> = self.alive(tick).map(|robot| self.at[robot]).collect();
+        let Trace {
+            scenario, safety, ..
+        } = &mut self.trace;
+        safety.check_separation(&scenario.limits, &alive);
+    }
+
+    /// The look after the last flight.
+    fn finish(mut self, tick: u32) -> Trace {
+        let alive: Vec<_> = self.alive(tick).collect();
+        self.trace.all_stopped = alive.iter().all(|&robot| self.has_stopped[robot]);
+        self.look(tick, alive);
+        self.trace
+    }
+
+    fn look(&mut self, tick: u32, robots: impl IntoIterator<Item = usize>) {
+        let trace = &mut self.trace;
+        let width = usize::from(trace.extent.width);
+        for robot in robots {
+            for column in look(&trace.terrain, self.at[robot], trace.scenario.limits.range) {
+                let index = column.cell.y as usize * width + column.cell.x as usize;
+                if !std::mem::replace(&mut self.known[index], true) {
+                    trace.found.push((tick, column));
+                }
+            }
+        }
+        trace.seen.push(trace.found.len() as u32);
+    }
+
+    /// The robots that live in this step.
+    fn alive(&self, tick: u32) -> impl Iterator<Item = usize> + '_ {
+        let kills = &self.trace.scenario.kills;
+        let lives = move |robot: &usize| {
+            !kills
+                .iter()
+                .any(|kill| kill.robot == *robot && kill.step <= tick)
+        };
+        (0..self.at.len()).filter(lives)
+    }
+}
+
+impl Heights {
+    fn terrain(self) -> Result<Terrain, TraceError> {
+        let rows = &self.heights;
+        let (width, height) = (rows.first().map_or(0, Vec::len), rows.len());
+        if let Some(row) = rows.iter().position(|row| row.len() != width) {
+            return Err(TraceError::Ragged {
+                row: row + 1,
+                expected: width,
+                found: rows[row].len(),
+            });
+        }
+        let sides = 1..=LARGEST as usize;
+        if !sides.contains(&width) || !sides.contains(&height) {
+            let reason = format!("the terrain has {width}×{height} columns");
+            return Err(TraceError::Survey(reason));
+        }
+        let height_at = |cell: Cell| Height(rows[cell.y as usize][cell.x as usize]);
+        let extent = Extent::new(width as u16, height as u16);
+        Ok(Terrain::from_fn(extent, height_at).named(self.name))
+    }
+}
+
+fn parse_record(line: &str) -> Option<Record> {
+    let mut numbers = line.split(',');
+    let mut next = || numbers.next();
+    let tick = next()?.parse().ok()?;
+    let robot = next()?.parse().ok()?;
+    let mut coordinate = || next()?.parse().ok().filter(|at: &f32| at.is_finite());
+    let at = Point {
+        x: coordinate()?,
+        y: coordinate()?,
+        z: coordinate()?,
+    };
+    let deed = match next()? {
+        "0" => Deed::Flew,
+        "1" => Deed::Refused,
+        "2" => Deed::Hovered,
+        "32" => Deed::Stopped(Stop::Complete),
+        // How many were left is not in the file.
+        "33" => Deed::Stopped(Stop::Unseen { frontiers: 0 }),
+        _ => return None,
+    };
+    let target = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
+    let record = Record {
+        tick,
+        robot,
+        at,
+        deed,
+        target: (target != Cell::new(-1, -1)).then_some(target),
+        gain: next()?.parse().ok()?,
+        known: next()?.parse().ok()?,
+        work: next()?.parse().ok()?,
+        sent: Sent {
+            frames: next()?.parse().ok()?,
+            bytes: next()?.parse().ok()?,
+        },
+    };
+    next().is_none().then_some(record)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::survey::run;
+
+    /// A run in which robots die and sleep, and messages are lost.
+    fn trace(planner: Planner) -> Trace {
+        let terrain = Terrain::urban(3, 24);
+        let scenario = Scenario {
+            medium: MediumKind::Radio,
+            loss: 0.3,
+            skip: 0.2,
+            kills: vec![Kill { robot: 1, step: 9 }],
+            ..Scenario::new(planner, 3, 5)
+        };
+        run(&terrain, &scenario).unwrap()
+    }
+
+    fn text(trace: &Trace) -> String {
+        let mut file = Vec::new();
+        trace.write(&mut file).unwrap();
+        String::from_utf8(file).unwrap()
+    }
+
+    #[test]
+    fn a_trace_survives_its_file_with_all_that_was_seen() {
+        for planner in [Planner::CoordinatedSurvey, Planner::Fcao, Planner::Greedy] {
+            let trace = trace(planner);
+            let read = Trace::read(text(&trace).as_bytes()).unwrap();
+            assert_eq!(read.scenario, trace.scenario);
+            assert_eq!(read.terrain, trace.terrain);
+            assert_eq!(read.starts, trace.starts);
+            assert_eq!(text(&read), text(&trace));
+            assert_eq!(read.found, trace.found);
+            assert_eq!(read.seen, trace.seen);
+            assert_eq!(read.safety, trace.safety);
+            assert_eq!(read.all_stopped, trace.all_stopped, "{planner}");
+        }
+    }
+
+    #[test]
+    fn a_damaged_file_is_an_error_that_says_where() {
+        let text = text(&trace(Planner::Fcao));
+        let error = |text: &str| Trace::read(text.as_bytes()).unwrap_err().to_string();
+        let cut = &text[..text[..text.len() - 1].rfind('\n').unwrap()];
+        assert!(error(cut).contains("cut off"), "{}", error(cut));
+        for (from, to, reason) in [
+            ("\n0,1,", "\n0,one,", "line 4"),
+            ("\n0,1,", "\n0,2,", "digest"),
+            ("\"version\":1", "\"version\":9", "version 9"),
+            ("\"starts\":[[", "\"starts\":[[],[", "line 1"),
+            ("\"range\":8.0", "\"range\":1e9", "range"),
+            ("\"heights\":[[", "\"heights\":[[7,", "row 2"),
+        ] {
+            let error = error(&text.replacen(from, to, 1));
+            assert!(error.contains(reason), "{error}");
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Towns of voxels: streets, rooms, bridges, cube by cube.
+
+use egui::Shape;
+use host_sim::survey::draw::animate;
+use host_sim::survey::voxels::{Scene, Simulation, VoxelTrace};
+use image::RgbImage;
+use planner_core::volume::Voxel;
+use planner_core::{Extent, Point};
+
+use super::SurveySetup;
+use super::eye::{Blocks, Eye};
+use super::flight::{Flight, Layers, shade};
+use crate::colors::Colors;
+
+/// Not seen.
+const NEVER: u32 = u32::MAX;
+
+/// A run among voxels.
+pub(super) struct Voxels {
+    source: Source,
+    /// Since which step each voxel has been seen, level by level.
+    seen_since: Vec<u32>,
+    /// How much of what was found is in `seen_since`.
+    taken: usize,
+}
+
+enum Source {
+    Running(Box<Simulation>),
+    Opened(Box<VoxelTrace>),
+}
+
+impl Source {
+    fn trace(&self) -> &VoxelTrace {
+        match self {
+            Self::Running(run) => run.trace(),
+            Self::Opened(trace) => trace,
+        }
+    }
+}
+
+/// How a voxel is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    Nothing,
+    Hidden,
+    Seen,
+}
+
+impl Voxels {
+    pub(super) fn new(scene: &Scene, setup: &SurveySetup) -> Result<Self, String> {
+        let run = Simulation::new(scene, &setup.voxel_scenario())?;
+        Ok(Self::with(Source::Running(Box::new(run))))
+    }
+
+    pub(super) fn opened(trace: VoxelTrace) -> Self {
+        let mut voxels = Self::with(Source::Opened(Box::new(trace)));
+        voxels.take();
+        voxels
+    }
+
+    fn with(source: Source) -> Self {
+        let voxels = source.trace().scene.voxels().count();
+        Self {
+            seen_since: vec![NEVER; voxels],
+            source,
+            taken: 0,
+        }
+    }
+
+    fn trace(&self) -> &VoxelTrace {
+        self.source.trace()
+    }
+
+    /// Takes in what was found since the last time.
+    fn take(&mut self) {
+        let trace = self.source.trace();
+        for &(step, voxel, _) in &trace.found[self.taken..] {
+            self.seen_since[index(&trace.scene, voxel)] = step;
+        }
+        self.taken = trace.found.len();
+    }
+}
+
+fn index(scene: &Scene, Voxel { x, y, z }: Voxel) -> usize {
+    let Extent { width, height } = scene.extent();
+    (z as usize * usize::from(height) + y as usize) * usize::from(width) + x as usize
+}
+
+impl Flight for Voxels {
+    fn step(&mut self) -> bool {
+        let Source::Running(run) = &mut self.source else {
+            return false;
+        };
+        let goes_on = run.step();
+        self.take();
+        goes_on
+    }
+
+    fn seen(&self) -> &[u32] {
+        &self.trace().seen
+    }
+
+    fn all(&self) -> u32 {
+        self.trace().visible
+    }
+
+    fn is_complete(&self) -> bool {
+        self.trace().all_stopped && self.trace().complete()
+    }
+
+    fn violations(&self) -> (&'static str, u32) {
+        let count = self.trace().violations;
+        ("beside or into something", count)
+    }
+
+    fn digest(&self) -> String {
+        self.trace().digest()
+    }
+
+    fn name(&self) -> &str {
+        self.trace().scene.name()
+    }
+
+    fn extent(&self) -> Extent {
+        self.trace().scene.extent()
+    }
+
+    fn levels(&self) -> Option<u8> {
+        Some(self.trace().scene.levels())
+    }
+
+    fn ways(&self, steps: usize) -> Vec<Vec<Point>> {
+        let middle = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
+        let ways = self.trace().ways.iter();
+        ways.map(|way| way.iter().take(steps + 1).map(middle).collect())
+            .collect()
+    }
+
+    fn beneath(&self, at: Point) -> f32 {
+        let (cell, scene) = (at.cell(), &self.trace().scene);
+        let below = (0..at.z as i16).rev();
+        let solid = |z: &i16| scene.is_occupied(Voxel::new(cell.x, cell.y, *z)) == Some(true);
+        below
+            .into_iter()
+            .find(solid)
+            .map_or(0.0, |z| f32::from(z) + 1.0)
+    }
+
+    fn ground(&self, steps: usize, eye: &Eye, layers: &Layers, colors: &Colors) -> Shape {
+        let scene = &self.trace().scene;
+        let (extent, levels) = (scene.extent(), scene.levels().min(layers.levels));
+        let look = |voxel: Voxel| match scene.is_occupied(voxel) {
+            Some(true) if voxel.z >= i16::from(levels) => Look::Nothing,
+            Some(true) if self.seen_since[index(scene, voxel)] as usize <= steps => Look::Seen,
+            Some(true) if layers.hidden => Look::Hidden,
+            _ => Look::Nothing,
+        };
+        let east = if eye.east_is_near() { 1 } else { -1 };
+        let south = if eye.south_is_near() { 1 } else { -1 };
+        let mut blocks = Blocks::new(eye);
+        for (x, y) in eye.columns(extent) {
+            for z in 0..i16::from(levels) {
+                let own = look(Voxel::new(x, y, z));
+                let color = match own {
+                    Look::Nothing => continue,
+                    Look::Hidden => colors.unknown,
+                    Look::Seen => shade(f32::from(z + 1) / f32::from(scene.levels()), colors),
+                };
+                let at = (f32::from(x), f32::from(y));
+                let (low, high) = (f32::from(z), f32::from(z + 1));
+                // What another voxel covers is not drawn.
+                if look(Voxel::new(x + east, y, z)) == Look::Nothing {
+                    blocks.across(at, (low, high), color);
+                }
+                if look(Voxel::new(x, y + south, z)) == Look::Nothing {
+                    blocks.along(at, (low, high), color);
+                }
+                if look(Voxel::new(x, y, z + 1)) == Look::Nothing {
+                    blocks.top(at, high, color);
+                }
+            }
+        }
+        blocks.shape()
+    }
+
+    fn picture(&self, steps: u32) -> RgbImage {
+        self.trace().oblique_view(steps)
+    }
+
+    fn animation(&self) -> Result<Vec<u8>, String> {
+        let trace = self.trace();
+        let steps = trace.seen.len() as u32;
+        let mut gif = Vec::new();
+        animate(steps, |step| trace.oblique_view(step), &mut gif)
+            .map_err(|error| error.to_string())?;
+        Ok(gif)
+    }
+
+    fn file(&self) -> Result<Vec<u8>, String> {
+        let mut bytes = Vec::new();
+        let written = self.trace().write(&mut bytes);
+        written.map_err(|error| error.to_string())?;
+        Ok(bytes)
+    }
+}

@@ -14,8 +14,6 @@
 
 mod file;
 
-use std::fmt::Write;
-
 use planner_core::{Cell, Direction, Stop};
 use sha2::{Digest, Sha256};
 
@@ -154,13 +152,14 @@ fn digest(records: &[Record]) -> String {
     for record in records {
         sha.update(record.bytes());
     }
-    sha.finalize()
-        .iter()
-        .take(8)
-        .fold(String::new(), |mut digits, byte| {
-            write!(digits, "{byte:02x}").expect("a String takes everything");
-            digits
-        })
+    hex_digits(sha)
+}
+
+/// The first 16 hex digits: how the digest of a trace of any kind is written.
+pub(crate) fn hex_digits(sha: Sha256) -> String {
+    let digest = sha.finalize();
+    let first = digest.iter().take(8);
+    first.map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

@@ -11,7 +11,6 @@
 
 mod read;
 
-use std::fmt::Write as _;
 use std::io;
 
 use planner_core::surface::Column;
@@ -23,7 +22,7 @@ use sha2::{Digest, Sha256};
 use super::scenario::Scenario;
 use super::terrain::Terrain;
 use crate::fleet::Sent;
-use crate::trace::Kind;
+use crate::trace::{Kind, hex_digits};
 
 const KIND: Kind = Kind {
     format: "host-sim survey trace",
@@ -303,12 +302,5 @@ fn digest(records: &[Record]) -> String {
             sha.update(number.to_le_bytes());
         }
     }
-    let digest = sha.finalize();
-    digest
-        .iter()
-        .take(8)
-        .fold(String::new(), |mut digits, byte| {
-            write!(digits, "{byte:02x}").expect("a String takes everything");
-            digits
-        })
+    hex_digits(sha)
 }

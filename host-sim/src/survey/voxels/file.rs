@@ -20,7 +20,7 @@ use sha2::{Digest, Sha256};
 use super::run::{Scenario, VoxelTrace, look, visible};
 use super::scene::{LARGEST, Scene};
 use crate::fleet::Sent;
-use crate::trace::{Kind, TraceError};
+use crate::trace::{Kind, TraceError, hex_digits};
 
 const KIND: Kind = Kind {
     format: "host-sim voxel trace",
@@ -186,14 +186,7 @@ fn text(records: impl Iterator<Item = Record>) -> String {
 }
 
 fn digest(records: impl Iterator<Item = Record>) -> String {
-    let digest = Sha256::digest(text(records));
-    digest
-        .iter()
-        .take(8)
-        .fold(String::new(), |mut digits, byte| {
-            write!(digits, "{byte:02x}").expect("a String takes everything");
-            digits
-        })
+    hex_digits(Sha256::new_with_prefix(text(records)))
 }
 
 impl Record {

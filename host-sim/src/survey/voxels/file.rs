@@ -259,7 +259,7 @@ impl Levels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::survey::voxels::run;
+    use crate::survey::voxels::{Simulation, run};
 
     fn trace(max_ticks: u32) -> VoxelTrace {
         let scenario = Scenario {
@@ -293,6 +293,16 @@ mod tests {
                 (trace.visible, 0, max_ticks > 60)
             );
         }
+    }
+
+    #[test]
+    fn a_run_that_is_over_stays_as_it_is() {
+        let trace = trace(20);
+        let mut run = Simulation::new(&trace.scene, &trace.scenario).unwrap();
+        while run.step() {}
+        assert!(!run.step() && !run.step());
+        assert_eq!(run.trace().seen, trace.seen);
+        assert_eq!(file(run.trace()), file(&trace));
     }
 
     #[test]

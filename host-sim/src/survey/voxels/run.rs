@@ -195,7 +195,7 @@ impl Simulation {
         &self.trace
     }
 
-    /// One step of the fleet; false if the run is over.
+    /// One step of the fleet; false if the run is over, and then nothing changes any more.
     pub fn step(&mut self) -> bool {
         let Self {
             scene,
@@ -207,6 +207,10 @@ impl Simulation {
             seen,
             now,
         } = self;
+        // In the last step robots look, and nobody flies on.
+        if trace.seen.len() > *now as usize {
+            return false;
+        }
         let scenario = trace.scenario.clone();
         let mut views = Vec::new();
         for (robot, way) in robots.iter_mut().zip(&trace.ways) {

@@ -5,7 +5,8 @@ use planner_core::map::{ExtentError, TileIndex};
 use planner_core::radio::{FrameError, Heard, LinkConfig, TileRecord};
 use planner_core::survey::SetupError;
 use planner_core::{
-    Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, explorer, local_frontiers,
+    Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, Wait, explorer,
+    local_frontiers,
 };
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +68,8 @@ pub enum Request<'a> {
     Tick,
     /// [`Reply::Done`].
     Report(Motion),
+    /// [`Reply::Done`].
+    Resume,
     /// [`Reply::Frame`].
     Transmit,
     /// A frame; [`Reply::Heard`].
@@ -123,6 +126,8 @@ pub struct State {
     pub here: TileRecord,
     /// What the robot is about to do.
     pub role: Option<explorer::Role>,
+    /// Why it waits.
+    pub waiting: Option<Wait>,
 }
 
 /// What a call returned.

@@ -133,6 +133,16 @@ pub enum PlannerStop {
     Enclosed = 2,
     /// Gave up: the way stayed blocked at `at`, `frontiers` cells are left.
     Blocked = 3,
+    /// Every cell that can be reached within the map is known; the map ends at
+    /// `frontiers` free cells, and the world may go on.
+    AtEdge = 6,
+    /// Every cell that can be reached is known; `frontiers` cells in sight lie where no
+    /// way leads.
+    OutOfReach = 7,
+    /// Gave up: no look shows what is at `at`, `frontiers` cells are left.
+    Unseen = 8,
+    /// Gave up: a robot stayed in the way at `at`, `frontiers` cells are left.
+    Held = 9,
 }
 
 /// What a tick decided.
@@ -187,17 +197,20 @@ impl From<Action> for PlannerAction {
             }
             Action::Stop(stop) => {
                 told.kind = PlannerActionKind::Stop;
-                (told.stop, told.frontiers) = match stop {
-                    Stop::Complete => (PlannerStop::Complete, 0),
-                    Stop::Enclosed { frontiers } => (PlannerStop::Enclosed, frontiers),
-                    Stop::Blocked { frontiers, at } => {
-                        told.at = PlannerCell { x: at.x, y: at.y };
-                        (PlannerStop::Blocked, frontiers)
-                    }
+                told.frontiers = stop.left();
+                if let Some(at) = stop.place() {
+                    told.at = PlannerCell { x: at.x, y: at.y };
+                }
+                told.stop = match stop {
+                    Stop::Complete => PlannerStop::Complete,
+                    Stop::Enclosed { .. } => PlannerStop::Enclosed,
+                    Stop::Blocked { .. } => PlannerStop::Blocked,
                     // Of another planner; told as what it is, a stop without completeness.
-                    Stop::BackAtStart { frontiers } | Stop::NoTrace { frontiers } => {
-                        (PlannerStop::None, frontiers)
-                    }
+                    Stop::BackAtStart { .. } | Stop::NoTrace { .. } => PlannerStop::None,
+                    Stop::AtEdge { .. } => PlannerStop::AtEdge,
+                    Stop::OutOfReach { .. } => PlannerStop::OutOfReach,
+                    Stop::Unseen { .. } => PlannerStop::Unseen,
+                    Stop::Held { .. } => PlannerStop::Held,
                 };
             }
         }

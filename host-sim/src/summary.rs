@@ -1,6 +1,5 @@
 //! A run in one JSON object.
 
-use planner_core::Stop;
 use serde::Serialize;
 
 use crate::measured::Measured;
@@ -86,8 +85,8 @@ pub struct RobotSummary {
     pub frames_sent: u32,
     /// Their bytes.
     pub bytes_sent: u32,
-    /// `complete`, `enclosed`, `blocked`, `back-at-start`, `no-trace`; `null`
-    /// if it had not stopped.
+    /// [`Stop::name`](planner_core::Stop::name) of the reason; `null` if it had not
+    /// stopped.
     pub stop: Option<&'static str>,
     /// The reason in words.
     pub stop_reason: Option<String>,
@@ -147,20 +146,10 @@ impl RobotSummary {
             work: robot.work,
             frames_sent: robot.sent.frames,
             bytes_sent: robot.sent.bytes,
-            stop: robot.stop.map(stop_name),
+            stop: robot.stop.map(|stop| stop.name()),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             alive: robot.alive,
         }
-    }
-}
-
-fn stop_name(stop: Stop) -> &'static str {
-    match stop {
-        Stop::Complete => "complete",
-        Stop::Enclosed { .. } => "enclosed",
-        Stop::Blocked { .. } => "blocked",
-        Stop::BackAtStart { .. } => "back-at-start",
-        Stop::NoTrace { .. } => "no-trace",
     }
 }
 

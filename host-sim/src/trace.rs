@@ -14,7 +14,7 @@
 
 mod file;
 
-use planner_core::{Cell, Direction, Stop};
+use planner_core::{Cell, Direction};
 use sha2::{Digest, Sha256};
 
 pub use file::{Kind, TraceError};
@@ -48,7 +48,8 @@ pub struct Record {
     /// 0 to 3: moved east, south, west, north; 4 to 7: tried to, and was
     /// blocked; 8 to 11: and was held by a robot that goes first; 12 to 15: and
     /// exchanged roles with the robot there. 16: waited; 17: gave its role away
-    /// before it had acted. 32 to 36: had stopped, by the order of [`Stop`].
+    /// before it had acted. From 32 on: had stopped, 32 and
+    /// [`Stop::code`](planner_core::Stop::code).
     pub action: u8,
     /// Where it was going; in the file and the digest -1, -1 for nowhere.
     pub goal: Option<Cell>,
@@ -79,11 +80,7 @@ impl Record {
             Deed::Exchanged(direction) => 12 + direction as u8,
             Deed::Waited => WAITED,
             Deed::Yielded => YIELDED,
-            Deed::Stopped(Stop::Complete) => STOPPED,
-            Deed::Stopped(Stop::Enclosed { .. }) => STOPPED + 1,
-            Deed::Stopped(Stop::Blocked { .. }) => STOPPED + 2,
-            Deed::Stopped(Stop::BackAtStart { .. }) => STOPPED + 3,
-            Deed::Stopped(Stop::NoTrace { .. }) => STOPPED + 4,
+            Deed::Stopped(stop) => STOPPED + stop.code(),
         };
         Self {
             tick,

@@ -94,7 +94,12 @@ fn stop(action: u8) -> &'static str {
         1 => "stops: complete, the rest lies behind walls",
         2 => "gives up: the way stayed blocked",
         3 => "stops: back at the start with no frontier in view",
-        _ => "stops: no frontier in view and no trace to follow",
+        4 => "stops: no frontier in view and no trace to follow",
+        5 => "stops: complete within the map, whose edge cuts the world off",
+        6 => "stops: complete, no way leads to what else is in sight",
+        7 => "gives up: no look shows what is left",
+        8 => "gives up: a robot stayed in the way",
+        _ => "stops, for a reason that this lab does not know",
     }
 }
 

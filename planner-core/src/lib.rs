@@ -17,6 +17,7 @@ mod planner;
 mod point;
 pub mod radio;
 pub mod rng;
+mod robot;
 pub mod sight;
 pub mod surface;
 pub mod survey;
@@ -25,6 +26,7 @@ pub mod voxel_survey;
 
 pub use cell::{Cell, Direction, Extent};
 pub use map::{Learnt, Map, TileSet};
-pub use planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+pub use planner::Planner;
 pub use point::Point;
+pub use robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;

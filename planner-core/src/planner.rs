@@ -1,137 +1,10 @@
-//! The verbs that every planner has, and the plain data that they exchange.
+//! The verbs that every planner has.
 
-use core::fmt;
-
-use crate::cell::{Cell, Direction};
 use crate::explorer::Role;
 use crate::map::{Learnt, Map, TileIndex, TileSet};
 use crate::radio::{FrameError, Heard, MAX_LEN};
+use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::sight::Sighting;
-
-/// Names a robot. Lower ids win ties.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct RobotId(pub u8);
-
-/// What the robot shall do now. Every [`Planner::tick`] returns one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Action {
-    /// Go to the neighbouring cell; then [`Planner::report`] how it went.
-    Move(Direction),
-    /// Stand still for this tick: a search is under way, or the way is closed for a while.
-    Wait,
-    /// Done, for this reason. Final: every later tick returns the same.
-    Stop(Stop),
-}
-
-/// Why a robot stopped. "Done" and "gave up" never look alike.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Stop {
-    /// Every cell that can be reached from here is known.
-    Complete,
-    /// Every cell that can be reached from here is known; the map has
-    /// `frontiers` more frontier cells, heard from others, behind known walls.
-    Enclosed {
-        /// Frontier cells that no way leads to.
-        frontiers: u32,
-    },
-    /// Gave up: the only ways to what is left stayed blocked.
-    Blocked {
-        /// Frontier cells left.
-        frontiers: u32,
-        /// A cell that could not be entered.
-        at: Cell,
-    },
-    /// Gave up: back at the start with no frontier in view [Gauville2019 §3.2
-    /// step 2b]. The published algorithm takes this for completeness; it is not.
-    BackAtStart {
-        /// Frontier cells left on the robot's map.
-        frontiers: u32,
-    },
-    /// Gave up: no frontier in view and no neighbour to follow a trace to
-    /// [Gauville2019 §3.2 step 2c, §6.1].
-    NoTrace {
-        /// Frontier cells left on the robot's map.
-        frontiers: u32,
-    },
-}
-
-impl Stop {
-    /// Whether everything that the robot could reach is known to it.
-    pub const fn is_complete(self) -> bool {
-        matches!(self, Self::Complete | Self::Enclosed { .. })
-    }
-}
-
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Complete => write!(f, "complete"),
-            Self::Enclosed { frontiers } => write!(
-                f,
-                "complete; {frontiers} frontier cells heard of lie behind walls"
-            ),
-            Self::Blocked { frontiers, at } => write!(
-                f,
-                "gave up: the way stayed blocked at {at}, {frontiers} frontier cells left"
-            ),
-            Self::BackAtStart { frontiers } => write!(
-                f,
-                "back at the start with no frontier in view, {frontiers} frontier cells on the map"
-            ),
-            Self::NoTrace { frontiers } => write!(
-                f,
-                "no frontier in view and no trace to follow, {frontiers} frontier cells on the map"
-            ),
-        }
-    }
-}
-
-/// How the step of the last [`Action::Move`] went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Motion {
-    /// The robot is on the cell that it was sent to.
-    Moved,
-    /// Something stood in the way; the robot is where it was.
-    Blocked,
-    /// Another robot stands there and goes first; the robot is where it was, and
-    /// its plan holds.
-    Held,
-}
-
-/// What a robot says about itself, and remembers of the others: hints, never
-/// needed for completeness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Status {
-    /// Where it is.
-    pub position: Cell,
-    /// Where it is going.
-    pub goal: Option<Cell>,
-    /// What it has come to.
-    pub activity: Activity,
-}
-
-/// The part of a robot's state that others decide by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Activity {
-    /// Exploring.
-    Exploring,
-    /// Following others' traces [Gauville2019 §6.1].
-    SecondChance,
-    /// Stopped for good.
-    Stopped,
-}
 
 /// A planner of one robot on a map of at most `TW`×`TH` tiles.
 ///
@@ -145,6 +18,17 @@ pub trait Planner<const TW: usize, const TH: usize> {
 
     /// Decides. Call it once per tick.
     fn tick(&mut self) -> Action;
+
+    /// Why the last [`tick`](Self::tick) was [`Action::Wait`], and whether the robot is
+    /// to look in another direction. `None`: it was not, or this planner does not tell.
+    fn waiting(&self) -> Option<Wait> {
+        None
+    }
+
+    /// Goes on after a stop with the map at hand: somebody opened a door, carried the
+    /// robot, or wants it to try again what it gave up. What refused a step or showed
+    /// nothing is tried anew. Without a stop it does only the latter.
+    fn resume(&mut self);
 
     /// Says how the step of the last [`Action::Move`] went.
     fn report(&mut self, motion: Motion);

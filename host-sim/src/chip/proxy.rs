@@ -7,7 +7,7 @@ use planner_core::explorer::Role;
 use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, FrameError, GridId, Heard, MAX_LEN, TileRecord};
 use planner_core::{
-    Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet,
+    Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
 };
 
 use super::emulator::Chip;
@@ -65,6 +65,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
                     tile: Tile::UNKNOWN,
                 },
                 role: None,
+                waiting: None,
             },
         };
         match chip.and_then(|chip| proxy.start(chip, kind, setup)) {
@@ -122,6 +123,10 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         // Where the robot stands shows in no message but this one.
         let TileRecord { at, tile } = self.state.here;
         self.map.join_tile(at, tile);
+        let position = self.state.status.position;
+        if TileIndex::of(position).is_some_and(|(of, bit)| of == at && tile.visited & bit != 0) {
+            self.map.stand(position);
+        }
         let value = read(answer.reply);
         if value.is_none() {
             self.fail(ChipError::Dialogue {
@@ -183,6 +188,14 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
             self.fail(ChipError::OtherMap { robot: self.id });
         }
         action.unwrap_or(Action::Wait)
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        self.state.waiting
+    }
+
+    fn resume(&mut self) {
+        self.tell(None, &Request::Resume);
     }
 
     fn report(&mut self, motion: Motion) {

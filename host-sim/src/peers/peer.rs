@@ -86,7 +86,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
         config: LinkConfig,
     ) -> Result<Self, ExtentError> {
         let mut map = Box::new(Map::vacant());
-        map.reset(extent)?;
+        map.reset_with(extent, start)?;
         let mut link = Link::vacant();
         link.reset(config, id, extent);
         Ok(Self {
@@ -147,7 +147,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
     fn rest(&mut self) -> Action {
         let frontiers = self.map.frontiers();
         let stop = match self.closed.last() {
-            _ if frontiers == 0 => Stop::Complete,
+            _ if frontiers == 0 => Stop::nothing_left(self.map.free_edge_cells()),
             None => Stop::Enclosed { frontiers },
             Some(&(at, _)) if self.blocked_steps > PATIENCE => Stop::Blocked { frontiers, at },
             Some(_) => return Action::Wait,
@@ -191,6 +191,13 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
             Some(direction) => Action::Move(direction),
             None => self.rest(),
         }
+    }
+
+    fn resume(&mut self) {
+        self.stopped = None;
+        self.closed.clear();
+        self.blocked_steps = 0;
+        self.way.clear();
     }
 
     fn report(&mut self, motion: Motion) {

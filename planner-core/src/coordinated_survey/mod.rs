@@ -15,10 +15,10 @@ mod vicinity;
 
 use crate::cell::{Cell, Extent};
 use crate::fcao::History;
-use crate::planner::RobotId;
 use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
+use crate::robot::RobotId;
 use crate::surface::Tile;
 use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
 use frontier::SHORTLIST;

@@ -15,7 +15,7 @@ use super::wave::{LABELS, Wave};
 use super::window::Candidate;
 use crate::cell::Cell;
 use crate::map::TileIndex;
-use crate::planner::RobotId;
+use crate::robot::RobotId;
 
 /// How often all frontiers are given away anew if there are more robots than
 /// frontiers, before the robot looks for itself alone.

@@ -2,7 +2,7 @@
 //! would go the same way: each leans its own way instead.
 
 use crate::cell::Cell;
-use crate::planner::RobotId;
+use crate::robot::RobotId;
 
 /// By id, four long each.
 const WAYS: [(i32, i32); 8] = [

@@ -43,8 +43,9 @@ use window::{Aim, Candidate, NearSearch};
 
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
-use crate::planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop};
 use crate::sight::Sighting;
 
 /// How an explorer decides. One configuration serves a whole fleet; none of it
@@ -205,7 +206,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         extent: Extent,
         start: Cell,
     ) -> Result<(), ExtentError> {
-        self.around.map.reset(extent)?;
+        self.around.map.reset_with(extent, start)?;
         self.around.closed = ClosedCells::new();
         self.around.position = start;
         self.around.now = 0;
@@ -386,7 +387,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         if self.around.map.frontiers() == 0 {
             // Nothing seen yet is not the same as nothing left.
             if self.around.map.is_known(self.around.position) {
-                return self.stop(Stop::Complete);
+                return self.stop(Stop::nothing_left(self.around.map.free_edge_cells()));
             }
             return Action::Wait;
         }
@@ -432,6 +433,13 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             }
             None => Action::Wait,
         }
+    }
+
+    fn resume(&mut self) {
+        self.role.stopped = Maybe::Nothing;
+        self.role.used = 0;
+        self.around.closed = ClosedCells::new();
+        self.far.cancel();
     }
 
     fn report(&mut self, motion: Motion) {

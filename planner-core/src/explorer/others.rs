@@ -4,7 +4,7 @@
 use heapless::Vec;
 
 use crate::cell::Cell;
-use crate::planner::{Activity, RobotId, Status};
+use crate::robot::{Activity, RobotId, Status};
 
 /// Other robots that are remembered; of more, the nearest.
 pub const MAX_OTHERS: usize = 15;

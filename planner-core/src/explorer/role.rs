@@ -7,7 +7,7 @@
 use super::maybe::Maybe;
 use super::path::Path;
 use crate::cell::{Cell, Direction};
-use crate::planner::{RobotId, Stop};
+use crate::robot::{RobotId, Stop};
 
 /// Where a role is going, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
 use crate::map::{TileIndex, bits};
-use crate::planner::RobotId;
+use crate::robot::RobotId;
 
 /// Side of the window in cells and in tiles.
 pub(crate) const SIDE: usize = 32;

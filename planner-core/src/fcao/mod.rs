@@ -9,10 +9,10 @@ pub(crate) use history::History;
 
 use crate::cao::{Degree, Frame, Model};
 use crate::cell::Extent;
-use crate::planner::RobotId;
 use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
+use crate::robot::RobotId;
 use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area

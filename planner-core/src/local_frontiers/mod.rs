@@ -40,8 +40,9 @@ mod view;
 
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileSet};
-use crate::planner::{Action, Activity, Motion, Planner, RobotId, Status, Stop};
+use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Link, MAX_LEN};
+use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
 
 use closed::Closed;
@@ -94,6 +95,8 @@ pub struct LocalFrontiers<const TW: usize, const TH: usize> {
     phase: Phase,
     others: Others,
     closed: Closed,
+    /// Whether the last pose lay off the grid.
+    is_astray: bool,
     work: u32,
 }
 
@@ -116,6 +119,7 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
             phase: Phase::Vacant,
             others: Others::new(),
             closed: Closed::new(),
+            is_astray: false,
             work: 0,
         }
     }
@@ -125,7 +129,7 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
     /// and [`reset`](Self::reset).
     ///
     /// # Errors
-    /// The extent is empty or larger than [`Map::CAPACITY`].
+    /// The extent is empty or larger than [`Map::CAPACITY`], or the start lies outside.
     pub fn new(
         config: Config,
         id: RobotId,
@@ -148,7 +152,7 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
         extent: Extent,
         start: Cell,
     ) -> Result<(), ExtentError> {
-        self.map.reset(extent)?;
+        self.map.reset_with(extent, start)?;
         self.trace.clear();
         self.link.reset(config.link, id, extent);
         self.config = config;
@@ -162,6 +166,7 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
         self.phase = Phase::Blind;
         self.others = Others::new();
         self.closed = Closed::new();
+        self.is_astray = false;
         self.work = 0;
         Ok(())
     }
@@ -205,8 +210,14 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
         match self.phase {
             Phase::Vacant => return Learnt::default(),
-            Phase::Blind => self.phase = Phase::Exploring,
+            Phase::Blind if self.map.extent().contains(sighting.centre()) => {
+                self.phase = Phase::Exploring;
+            }
             _ => {}
+        }
+        self.is_astray = !self.map.extent().contains(sighting.centre());
+        if self.is_astray {
+            return Learnt::default();
         }
         self.position = sighting.centre();
         self.view = View::of(sighting);
@@ -226,8 +237,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
         self.work = 0;
         self.link.tick();
         let action = match self.phase {
-            Phase::Vacant | Phase::Blind => Action::Wait,
             Phase::Stopped(stop) => Action::Stop(stop),
+            Phase::Vacant | Phase::Blind => Action::Wait,
+            Phase::Exploring | Phase::SecondChance if self.is_astray => Action::Wait,
             Phase::Exploring | Phase::SecondChance => self.decide(),
         };
         self.moving = false;
@@ -238,6 +250,23 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
         self.closed.age();
         self.others.age(self.config.silence);
         action
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        match self.phase {
+            _ if self.is_astray => Some(Wait::Pose),
+            Phase::Blind => Some(Wait::Sight),
+            _ => None,
+        }
+    }
+
+    fn resume(&mut self) {
+        self.closed = Closed::new();
+        if let Phase::Stopped(_) = self.phase {
+            self.phase = Phase::Exploring;
+            self.trace.clear();
+            self.start = self.position;
+        }
     }
 
     /// A blocked step closes the cell for a while. Without a move to report on it

@@ -1,6 +1,6 @@
 //! Who else still explores, as heard.
 
-use crate::planner::{Activity, RobotId};
+use crate::robot::{Activity, RobotId};
 
 /// The other robots last heard exploring: the one thing that a second chance
 /// asks about [Gauville2019 §6.1]. A bit for each possible id, in two

@@ -3,7 +3,7 @@
 use super::view::Window;
 use super::{Goal, LocalFrontiers, Phase};
 use crate::cell::{Cell, Direction};
-use crate::planner::{Action, Stop};
+use crate::robot::{Action, Stop};
 
 impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
     /// One round of the algorithm; step 1, the marking of what is visible, is
@@ -162,7 +162,11 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
     /// Stops for good, for the given reason or a better one.
     pub(super) fn stop(&mut self, reason: Stop) -> Action {
         let nothing_left = self.map.frontiers() == 0 && self.map.is_free(self.position);
-        let stop = if nothing_left { Stop::Complete } else { reason };
+        let stop = if nothing_left {
+            Stop::nothing_left(self.map.free_edge_cells())
+        } else {
+            reason
+        };
         #[cfg(feature = "defmt")]
         defmt::info!("{} stops at {}: {}", self.id, self.position, stop);
         self.goal = None;

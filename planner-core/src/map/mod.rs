@@ -11,6 +11,8 @@ use core::fmt;
 
 pub use tile::{TILE, Tile, TileIndex, TileSet, bit_of, bits, carried, shifted};
 
+use tile::WEST_COLUMN;
+
 use crate::cell::{Cell, Direction, Extent};
 use crate::sight::Sighting;
 
@@ -28,6 +30,13 @@ pub enum ExtentError {
         /// What fits.
         capacity: Extent,
     },
+    /// The robot is to start outside of the grid.
+    Start {
+        /// Where it was to start.
+        start: Cell,
+        /// The grid.
+        extent: Extent,
+    },
 }
 
 impl fmt::Display for ExtentError {
@@ -37,6 +46,10 @@ impl fmt::Display for ExtentError {
             Self::TooLarge { asked, capacity } => write!(
                 f,
                 "a grid of {asked} cells does not fit a map compiled for {capacity}"
+            ),
+            Self::Start { start, extent } => write!(
+                f,
+                "the robot's start at {start} lies outside of the grid of {extent} cells"
             ),
         }
     }
@@ -81,6 +94,8 @@ pub struct Map<const TW: usize, const TH: usize> {
     frontier_counts: [[u8; TW]; TH],
     frontiers: u32,
     unknown: u32,
+    /// Free cells on the edge of the extent.
+    edge: u32,
     changed: TileSet<TH>,
 }
 
@@ -107,6 +122,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             frontier_counts: [[0; TW]; TH],
             frontiers: 0,
             unknown: 0,
+            edge: 0,
             changed: TileSet::new(),
         }
     }
@@ -140,6 +156,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.frontier_counts = [[0; TW]; TH];
         self.frontiers = 0;
         self.unknown = extent.cells();
+        self.edge = 0;
         self.changed.clear();
         for (y, row) in self.tiles.iter_mut().enumerate() {
             for (x, tile) in row.iter_mut().enumerate() {
@@ -152,6 +169,18 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             }
         }
         Ok(())
+    }
+
+    /// As [`reset`](Self::reset), for a robot that starts in that cell.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and a start outside of the extent; the map is then
+    /// unchanged.
+    pub fn reset_with(&mut self, extent: Extent, start: Cell) -> Result<(), ExtentError> {
+        if !extent.contains(start) && extent.cells() > 0 {
+            return Err(ExtentError::Start { start, extent });
+        }
+        self.reset(extent)
     }
 
     /// The grid's size in cells.
@@ -180,6 +209,12 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// Number of known cells of the extent.
     pub const fn known_cells(&self) -> u32 {
         self.extent.cells() - self.unknown
+    }
+
+    /// Number of known free cells on the edge of the extent: the world may go on behind
+    /// them.
+    pub const fn free_edge_cells(&self) -> u32 {
+        self.edge
     }
 
     /// One tile; outside of the map, obstacles.
@@ -283,9 +318,32 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         }
     }
 
-    /// Takes in what was seen. Work: at most 25 tiles, each with its four neighbours.
+    /// The cell that the robot stands on is free, whatever the map says of it: its own
+    /// place is surer than any look. Ignored outside. Work: the tile and its four
+    /// neighbours, or one look at the map where it agrees.
+    pub fn stand(&mut self, cell: Cell) {
+        if let Some((at, bit)) = TileIndex::of(cell)
+            && self.extent.contains(cell)
+            && let Some(tile) = self.tile_mut(at)
+            && tile.obstacle & bit != 0
+        {
+            tile.obstacle &= !bit;
+            tile.visited |= bit;
+            self.changed.insert(at);
+            self.edge += (bit & edge_mask(self.extent, at)).count_ones();
+            self.recount(at);
+        }
+    }
+
+    /// Takes in what was seen; nothing where the robot stood outside of the extent, for
+    /// its pose was wrong then. The robot's own cell is free, also if the map calls it
+    /// an obstacle. Work: at most 25 tiles, each with its four neighbours.
     pub fn observe(&mut self, sighting: &Sighting) -> Learnt {
         let mut learnt = Learnt::default();
+        if !self.extent.contains(sighting.centre()) {
+            return learnt;
+        }
+        self.stand(sighting.centre());
         let (corner, span) = sighting.tile_block();
         for dy in 0..span {
             for dx in 0..span {
@@ -312,15 +370,11 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// Joins another robot's tile into this map; ignored outside. Work: the tile
     /// and its four neighbours.
     pub fn join_tile(&mut self, at: TileIndex, other: Tile) -> Learnt {
-        let Some(tile) = self
-            .tiles
-            .get_mut(usize::from(at.y))
-            .and_then(|row| row.get_mut(usize::from(at.x)))
-        else {
+        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
+        let Some(tile) = self.tile_mut(at) else {
             return Learnt::default();
         };
         let before = *tile;
-        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
         let mut after = before.joined(other);
         after.visited &= inside;
         if after == before {
@@ -334,6 +388,9 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         };
         if learnt.anything() {
             self.unknown -= learnt.cells;
+            let edge = edge_mask(self.extent, at);
+            self.edge += (after.free() & edge).count_ones();
+            self.edge -= (before.free() & edge).count_ones();
             self.recount(at);
             if learnt.cells > 0 {
                 for direction in Direction::ALL {
@@ -346,6 +403,12 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             }
         }
         learnt
+    }
+
+    fn tile_mut(&mut self, at: TileIndex) -> Option<&mut Tile> {
+        self.tiles
+            .get_mut(usize::from(at.y))?
+            .get_mut(usize::from(at.x))
     }
 
     fn recount(&mut self, at: TileIndex) {
@@ -406,6 +469,26 @@ pub(crate) const fn inside_mask(extent: Extent, x: usize, y: usize) -> u64 {
     } else {
         all_rows & ((1 << (rows * TILE)) - 1)
     }
+}
+
+/// The cells of a tile that lie on the edge of the extent.
+fn edge_mask(extent: Extent, at: TileIndex) -> u64 {
+    let (x, y) = (at.x as usize, at.y as usize);
+    let last = |cells: u16| (cells as usize).saturating_sub(1);
+    let mut edge = 0;
+    if x == 0 {
+        edge |= WEST_COLUMN;
+    }
+    if y == 0 {
+        edge |= 0xff;
+    }
+    if x == last(extent.width) / TILE {
+        edge |= WEST_COLUMN << (last(extent.width) % TILE);
+    }
+    if y == last(extent.height) / TILE {
+        edge |= 0xff << (last(extent.height) % TILE * TILE);
+    }
+    edge & inside_mask(extent, x, y)
 }
 
 /// The map as text: `#` obstacle, `.` free, `+` visited, `?` frontier, space unknown.

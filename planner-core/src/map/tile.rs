@@ -8,7 +8,7 @@ use crate::cell::{Cell, Direction};
 pub const TILE: usize = 8;
 
 /// The western column of a tile.
-const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
+pub(super) const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
 /// The eastern column of a tile.
 const EAST_COLUMN: u64 = WEST_COLUMN << 7;
 

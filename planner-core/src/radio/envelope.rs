@@ -5,7 +5,7 @@ use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
-use crate::planner::RobotId;
+use crate::robot::RobotId;
 
 /// The format that this code writes, and the only one that it reads.
 pub(super) const VERSION: u8 = 1;

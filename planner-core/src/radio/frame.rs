@@ -10,7 +10,7 @@ use super::envelope::{
 use super::link::{GridId, Key};
 use crate::cell::Extent;
 use crate::map::{TILE, Tile, TileIndex};
-use crate::planner::{Activity, RobotId, Status};
+use crate::robot::{Activity, RobotId, Status};
 
 /// The longest frame in bytes: what the Crazyflie's peer-to-peer radio carries
 /// safely, less two.

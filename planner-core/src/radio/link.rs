@@ -7,7 +7,7 @@ use super::frame::{Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 use super::outbox::Outbox;
 use crate::cell::Extent;
 use crate::map::{Learnt, Map, TileSet};
-use crate::planner::{RobotId, Status};
+use crate::robot::{RobotId, Status};
 
 /// Names a grid: robots whose maps differ in origin, resolution or size do not
 /// understand each other.

@@ -6,8 +6,8 @@ use super::envelope::{HEADER, Header, Sealed, TAG, Writer, optional_cell, packed
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
-use crate::planner::RobotId;
 use crate::point::Point;
+use crate::robot::RobotId;
 use crate::surface::{Bits, Height, Patch, Tile};
 use crate::survey::Status;
 

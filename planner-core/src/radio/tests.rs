@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::cell::{Cell, Extent};
 use crate::map::{Map, Tile, TileIndex};
-use crate::planner::{Activity, RobotId, Status};
+use crate::robot::{Activity, RobotId, Status};
 
 const EXTENT: Extent = Extent::new(53, 43);
 

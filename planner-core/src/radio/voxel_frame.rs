@@ -8,7 +8,7 @@ use super::envelope::{
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::Extent;
-use crate::planner::RobotId;
+use crate::robot::RobotId;
 use crate::surface::Tile;
 use crate::volume::{Voxel, VoxelPatch};
 use crate::voxel_survey::Status;

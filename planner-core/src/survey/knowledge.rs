@@ -7,9 +7,9 @@ use super::news::{MAX_RANGE, News, REPEATS};
 use super::peers::{Peer, Peers};
 use super::{Action, Limits, Motion, Status, Stop};
 use crate::cell::{Cell, Extent};
-use crate::planner::RobotId;
 use crate::point::Point;
 use crate::radio::{FrameError, HeightRecord, LinkConfig, MAX_LEN};
+use crate::robot::RobotId;
 use crate::surface::{Bits, Column, Patch, Surface, Tile, TooLarge, distance_to_tile};
 
 /// Unknown tiles that the turn passes over in a step.

@@ -1,8 +1,8 @@
 //! One robot's end of the radio over a surface, and the turn of its map.
 
 use crate::cell::Extent;
-use crate::planner::RobotId;
 use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, SurfaceFrame, position_on_wire};
+use crate::robot::RobotId;
 use crate::surface::Tile;
 
 use super::Status;

@@ -1,7 +1,7 @@
 //! What every frame of a robot takes: a number, and bytes of its budget.
 
-use crate::planner::RobotId;
 use crate::radio::{GridId, Key, LinkConfig, MAX_LEN};
+use crate::robot::RobotId;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Sender {

@@ -36,8 +36,8 @@ mod news;
 use heapless::Vec;
 
 use crate::cell::Extent;
-use crate::planner::RobotId;
 use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, VoxelFrame};
+use crate::robot::RobotId;
 use crate::surface::Tile;
 use crate::survey::{Peer, Peers, Sender};
 use crate::volume::{DoesNotFit, Layer, Volume, Voxel, VoxelPatch};

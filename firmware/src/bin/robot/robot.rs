@@ -139,6 +139,10 @@ fn obey<'a>(
             let ((), cost) = stopwatch.measure(|| planner.report(motion));
             (Reply::Done, cost)
         }
+        Request::Resume => {
+            let ((), cost) = stopwatch.measure(|| planner.resume());
+            (Reply::Done, cost)
+        }
         Request::Transmit => {
             let (length, cost) = stopwatch.measure(|| planner.transmit(frame));
             (
@@ -193,6 +197,7 @@ fn state(planner: &Robot) -> State {
             tile: planner.map().tile_inside(at),
         },
         role: planner.role(),
+        waiting: planner.waiting(),
     }
 }
 

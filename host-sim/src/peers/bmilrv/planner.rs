@@ -61,7 +61,7 @@ impl<const TW: usize, const TH: usize> Bmilrv<TW, TH> {
         config: LinkConfig,
     ) -> Result<Self, ExtentError> {
         let mut map = Box::new(Map::vacant());
-        map.reset(extent)?;
+        map.reset_with(extent, start)?;
         let mut link = Link::vacant();
         link.reset(config, id, extent);
         let now = marks.lock().enter(id, start);
@@ -103,13 +103,18 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Bmilrv<TW, TH> {
             Decision::Wait => Action::Wait,
             Decision::Stop => {
                 let stop = match self.map.frontiers() {
-                    0 => Stop::Complete,
+                    0 => Stop::nothing_left(self.map.free_edge_cells()),
                     frontiers => Stop::Enclosed { frontiers },
                 };
                 self.stopped = Some(stop);
                 Action::Stop(stop)
             }
         }
+    }
+
+    fn resume(&mut self) {
+        self.stopped = None;
+        self.blocked_steps = 0;
     }
 
     fn report(&mut self, motion: Motion) {

@@ -37,7 +37,11 @@ fn assert_truthful(world: &World, robot: &world::Robot, stop: Stop) {
     let map = robot.map();
     let knows_all = world.reachable().iter().all(|&cell| map.is_known(cell));
     match stop {
-        Stop::Complete => assert!(knows_all && map.frontiers() == 0),
+        Stop::Complete => assert!(knows_all && map.frontiers() == 0 && map.free_edge_cells() == 0),
+        Stop::AtEdge { cells } => {
+            assert!(knows_all && map.frontiers() == 0);
+            assert!(cells > 0 && cells == map.free_edge_cells());
+        }
         Stop::BackAtStart { frontiers } => {
             assert_eq!(robot.position, world.start);
             assert!(frontiers > 0 && frontiers == map.frontiers());
@@ -45,7 +49,10 @@ fn assert_truthful(world: &World, robot: &world::Robot, stop: Stop) {
         Stop::NoTrace { frontiers } | Stop::Blocked { frontiers, .. } => {
             assert!(frontiers > 0 && frontiers == map.frontiers());
         }
-        Stop::Enclosed { .. } => panic!("it does not look for that"),
+        Stop::Enclosed { .. }
+        | Stop::OutOfReach { .. }
+        | Stop::Unseen { .. }
+        | Stop::Held { .. } => panic!("it does not look for that"),
     }
 }
 

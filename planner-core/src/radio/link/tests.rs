@@ -1,7 +1,7 @@
 use super::*;
 use crate::cell::Cell;
 use crate::map::{Tile, TileIndex};
-use crate::planner::Activity;
+use crate::robot::Activity;
 
 const EXTENT: Extent = Extent::new(29, 19);
 const STATUS: Status = Status {

@@ -1,0 +1,267 @@
+//! What a robot is called, does and says: the plain data that planners exchange with
+//! their robot and with each other.
+
+use core::fmt;
+
+use crate::cell::{Cell, Direction};
+#[cfg(doc)]
+use crate::planner::Planner;
+
+/// Names a robot. Lower ids win ties.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RobotId(pub u8);
+
+/// What the robot shall do now. Every [`Planner::tick`] returns one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Action {
+    /// Go to the neighbouring cell; then [`Planner::report`] how it went.
+    Move(Direction),
+    /// Stand still for this tick. [`Planner::waiting`] says why, and where to look.
+    Wait,
+    /// Done, for this reason. Every later tick returns the same, until
+    /// [`Planner::resume`].
+    Stop(Stop),
+}
+
+/// Why a robot stopped. "Done" and "gave up" never look alike. `P` is a place of the
+/// world: a cell of a grid or of a surface, a voxel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Stop<P = Cell> {
+    /// Everything that can be reached from here is known.
+    Complete,
+    /// Everything that can be reached from here is known; the map has `frontiers` more
+    /// frontiers that no way leads to, and part of it was heard from others.
+    Enclosed {
+        /// Frontiers that no way leads to.
+        frontiers: u32,
+    },
+    /// Gave up: the only ways to what is left stayed blocked.
+    Blocked {
+        /// Frontiers left.
+        frontiers: u32,
+        /// A place that could not be entered.
+        at: P,
+    },
+    /// Gave up: back at the start with no frontier in view [Gauville2019 §3.2
+    /// step 2b]. The published algorithm takes this for completeness; it is not.
+    BackAtStart {
+        /// Frontiers left on the robot's map.
+        frontiers: u32,
+    },
+    /// Gave up: no frontier in view and no neighbour to follow a trace to
+    /// [Gauville2019 §3.2 step 2c, §6.1].
+    NoTrace {
+        /// Frontiers left on the robot's map.
+        frontiers: u32,
+    },
+    /// Everything that can be reached within the map is known, and the map's edge cuts
+    /// the world off: the robot may be able to go on beyond it.
+    AtEdge {
+        /// Free cells on the edge of the map.
+        cells: u32,
+    },
+    /// Everything that can be reached from here is known; `frontiers` more frontiers
+    /// were seen past corners or through windows, and no way leads to them.
+    OutOfReach {
+        /// Frontiers that no way leads to.
+        frontiers: u32,
+    },
+    /// Gave up: looks from beside what is left showed nothing of it.
+    Unseen {
+        /// Frontiers left.
+        frontiers: u32,
+        /// A place that no look showed.
+        at: P,
+    },
+    /// Gave up: on the only ways to what is left other robots stood and did not move.
+    Held {
+        /// Frontiers left.
+        frontiers: u32,
+        /// A place where one stood.
+        at: P,
+    },
+}
+
+impl<P> Stop<P> {
+    /// The reason where no frontier is left on a map that ends at so many free cells.
+    pub const fn nothing_left(edge_cells: u32) -> Self {
+        match edge_cells {
+            0 => Self::Complete,
+            cells => Self::AtEdge { cells },
+        }
+    }
+
+    /// Whether everything that the robot could reach within its map is known to it.
+    pub const fn is_complete(&self) -> bool {
+        matches!(
+            self,
+            Self::Complete | Self::Enclosed { .. } | Self::AtEdge { .. } | Self::OutOfReach { .. }
+        )
+    }
+
+    /// The reason's number in traces and, plus one, in C. Numbers do not change; new
+    /// reasons get new ones.
+    pub const fn code(&self) -> u8 {
+        match self {
+            Self::Complete => 0,
+            Self::Enclosed { .. } => 1,
+            Self::Blocked { .. } => 2,
+            Self::BackAtStart { .. } => 3,
+            Self::NoTrace { .. } => 4,
+            Self::AtEdge { .. } => 5,
+            Self::OutOfReach { .. } => 6,
+            Self::Unseen { .. } => 7,
+            Self::Held { .. } => 8,
+        }
+    }
+
+    /// The reason's name in summaries, as one word.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Enclosed { .. } => "enclosed",
+            Self::Blocked { .. } => "blocked",
+            Self::BackAtStart { .. } => "back-at-start",
+            Self::NoTrace { .. } => "no-trace",
+            Self::AtEdge { .. } => "at-edge",
+            Self::OutOfReach { .. } => "out-of-reach",
+            Self::Unseen { .. } => "unseen",
+            Self::Held { .. } => "held",
+        }
+    }
+
+    /// Frontiers left, or on the map's edge.
+    pub const fn left(&self) -> u32 {
+        match self {
+            Self::Complete => 0,
+            Self::AtEdge { cells } => *cells,
+            Self::Enclosed { frontiers }
+            | Self::Blocked { frontiers, .. }
+            | Self::BackAtStart { frontiers }
+            | Self::NoTrace { frontiers }
+            | Self::OutOfReach { frontiers }
+            | Self::Unseen { frontiers, .. }
+            | Self::Held { frontiers, .. } => *frontiers,
+        }
+    }
+
+    /// The place that the reason names.
+    pub const fn place(&self) -> Option<&P> {
+        match self {
+            Self::Blocked { at, .. } | Self::Unseen { at, .. } | Self::Held { at, .. } => Some(at),
+            Self::Complete
+            | Self::Enclosed { .. }
+            | Self::BackAtStart { .. }
+            | Self::NoTrace { .. }
+            | Self::AtEdge { .. }
+            | Self::OutOfReach { .. } => None,
+        }
+    }
+}
+
+impl<P: fmt::Display> fmt::Display for Stop<P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Complete => write!(f, "complete"),
+            Self::Enclosed { frontiers } => write!(
+                f,
+                "complete; no way leads to {frontiers} frontiers, and part of the map was heard"
+            ),
+            Self::Blocked { frontiers, at } => write!(
+                f,
+                "gave up: the way stayed blocked at {at}, {frontiers} frontiers left"
+            ),
+            Self::BackAtStart { frontiers } => write!(
+                f,
+                "back at the start with no frontier in view, {frontiers} frontiers on the map"
+            ),
+            Self::NoTrace { frontiers } => write!(
+                f,
+                "no frontier in view and no trace to follow, {frontiers} frontiers on the map"
+            ),
+            Self::AtEdge { cells } => write!(
+                f,
+                "complete within the map, which ends at {cells} free cells: the world may go on"
+            ),
+            Self::OutOfReach { frontiers } => {
+                write!(
+                    f,
+                    "complete; no way leads to {frontiers} frontiers in sight"
+                )
+            }
+            Self::Unseen { frontiers, at } => write!(
+                f,
+                "gave up: no look shows what is at {at}, {frontiers} frontiers left"
+            ),
+            Self::Held { frontiers, at } => write!(
+                f,
+                "gave up: a robot stayed in the way at {at}, {frontiers} frontiers left"
+            ),
+        }
+    }
+}
+
+/// Why a robot waits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Wait {
+    /// It has seen nothing yet.
+    Sight,
+    /// Its pose lies off the grid: nothing is decided until a pose lies on it again.
+    Pose,
+    /// It searches the map.
+    Search,
+    /// What is left lies behind cells that refused a step. They are tried again later.
+    Closed,
+    /// It asks for a look in this direction: turn the sensor there, then observe. A
+    /// robot that sees all around need not turn.
+    Look(Direction),
+}
+
+/// How the step of the last [`Action::Move`] went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Motion {
+    /// The robot is on the cell that it was sent to.
+    Moved,
+    /// Something stood in the way; the robot is where it was.
+    Blocked,
+    /// Another robot stands there and goes first; the robot is where it was, and
+    /// its plan holds.
+    Held,
+}
+
+/// What a robot says about itself, and remembers of the others: hints, never
+/// needed for completeness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Status {
+    /// Where it is.
+    pub position: Cell,
+    /// Where it is going.
+    pub goal: Option<Cell>,
+    /// What it has come to.
+    pub activity: Activity,
+}
+
+/// The part of a robot's state that others decide by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Activity {
+    /// Exploring.
+    Exploring,
+    /// Following others' traces [Gauville2019 §6.1].
+    SecondChance,
+    /// Stopped for good.
+    Stopped,
+}

@@ -4,20 +4,61 @@ use planner_core::explorer::{Config, Explorer};
 use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, GridId, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::sight::look;
-use planner_core::{Action, Activity, Cell, Extent, Map, Motion, Planner, RobotId, Status};
+use planner_core::{
+    Action, Activity, Cell, Extent, Map, Motion, Planner, RobotId, Sighting, Status, Stop, Wait,
+};
 
 type Robot = Explorer<3, 3>;
 
-/// Longer than any robot needs on a grid of 18×18 cells.
-const PATIENCE: u32 = 20_000;
+/// Longer than any robot needs on a grid of 18×18 cells, most of which refuse.
+const PATIENCE: u32 = 200_000;
+
+/// What the robot cannot rely on, bit by bit.
+#[derive(Clone, Copy)]
+struct Trouble {
+    bits: u8,
+    seed: u8,
+}
+
+impl Trouble {
+    fn has(self, bit: u8) -> bool {
+        self.bits >> bit & 1 == 1
+    }
+
+    /// Short ways at hand, so that their rest is searched for.
+    fn way(self) -> u16 {
+        if self.has(0) { 8 } else { 256 }
+    }
+
+    /// No look says anything about the cell.
+    fn is_silent(self, cell: Cell) -> bool {
+        self.has(1) && scramble(cell, !self.seed) < 16
+    }
+
+    /// The cell cannot be entered, and why.
+    fn refuses(self, cell: Cell) -> Option<Motion> {
+        let refuses = self.has(2) && scramble(cell, self.seed ^ 0x55) < 40;
+        let motion = if self.has(3) {
+            Motion::Held
+        } else {
+            Motion::Blocked
+        };
+        refuses.then_some(motion)
+    }
+
+    /// The pose lies off the grid.
+    fn is_astray(self, tick: u32) -> bool {
+        self.has(4) && tick % 97 < 20 && tick < 2_000
+    }
+}
 
 /// Lets one robot explore a small world while it is fed what `script` says, over
 /// and over again.
 ///
 /// # Panics
 /// If it does not stop, if a refused frame changed the map, if its map is not
-/// one that sightings and valid frames can make, or if it claims to be done while
-/// something on its map is left.
+/// one that sightings and valid frames can make, if it decides anything from a pose off
+/// the grid, or if it stops for a reason that is not so.
 pub fn explore(script: &[u8]) {
     let mut script = Script {
         bytes: script,
@@ -31,14 +72,37 @@ pub fn explore(script: &[u8]) {
     let is_blocked = |cell: Cell| {
         !extent.contains(cell) || cell != Cell::new(0, 0) && scramble(cell, seed) < density
     };
+    let trouble = Trouble {
+        bits: script.byte(),
+        seed,
+    };
+    let config = Config {
+        way: trouble.way(),
+        ..Config::new()
+    };
     let start = script.at;
     let mut position = Cell::new(0, 0);
     let mut robot = Box::new(Robot::vacant());
     robot
-        .reset(Config::new(), RobotId(3), extent, position)
+        .reset(config, RobotId(3), extent, position)
         .expect("the grid fits");
-    for _ in 0..PATIENCE {
-        robot.observe(&look(position, radius, is_blocked));
+    for tick in 0..PATIENCE {
+        let is_astray = trouble.is_astray(tick);
+        let mut sighting = Sighting::new(if is_astray {
+            Cell::new(-3, 7)
+        } else {
+            position
+        });
+        if !is_astray {
+            let all = look(position, radius, is_blocked);
+            for cell in all.free_cells().filter(|&cell| !trouble.is_silent(cell)) {
+                sighting.see_free(cell);
+            }
+            for cell in all.blocked_cells().filter(|&cell| !trouble.is_silent(cell)) {
+                sighting.see_blocked(cell);
+            }
+        }
+        robot.observe(&sighting);
         for _ in 0..script.byte() % 4 {
             feed(&mut robot, &mut script, extent);
         }
@@ -52,16 +116,38 @@ pub fn explore(script: &[u8]) {
         match robot.tick() {
             Action::Move(direction) => {
                 let next = position.step(direction);
-                // A lie may show a wall as free, but never one that is in sight.
-                assert!(!is_blocked(next), "a step into an obstacle at {next}");
-                position = next;
-                robot.report(Motion::Moved);
+                assert!(!is_astray, "a step from a pose off the grid");
+                match trouble.refuses(next) {
+                    Some(motion) => robot.report(motion),
+                    // Of a cell that it cannot see the robot believes any lie.
+                    None if is_blocked(next) && trouble.is_silent(next) => {
+                        robot.report(Motion::Blocked);
+                    }
+                    None => {
+                        // A lie may show a wall as free, but never one that is in sight.
+                        assert!(!is_blocked(next), "a step into an obstacle at {next}");
+                        position = next;
+                        robot.report(Motion::Moved);
+                    }
+                }
             }
-            Action::Wait => {}
+            Action::Wait => assert_eq!(is_astray, robot.waiting() == Some(Wait::Pose)),
             Action::Stop(stop) => {
-                assert!(stop.is_complete(), "{stop}");
+                assert!(!is_astray, "a stop from a pose off the grid");
                 assert_sound(robot.map());
-                assert!(!reaches_frontier(robot.map(), position), "{stop}");
+                match stop {
+                    Stop::Blocked { at, .. } | Stop::Held { at, .. } => {
+                        assert!(
+                            trouble.refuses(at).is_some() || trouble.is_silent(at),
+                            "{stop}"
+                        );
+                    }
+                    Stop::Unseen { at, .. } => assert!(trouble.is_silent(at), "{stop}"),
+                    _ => {
+                        assert!(stop.is_complete(), "{stop}");
+                        assert!(!reaches_frontier(robot.map(), position), "{stop}");
+                    }
+                }
                 return;
             }
         }
@@ -73,6 +159,8 @@ pub fn explore(script: &[u8]) {
 }
 
 /// One frame: raw bytes, or one that says anything in the right form.
+///
+/// A position is the robot's own cell or its goal now and then: where hints hurt most.
 fn feed(robot: &mut Robot, script: &mut Script<'_>, extent: Extent) {
     let mut buffer = [0; MAX_LEN];
     let kind = script.byte();
@@ -81,7 +169,9 @@ fn feed(robot: &mut Robot, script: &mut Script<'_>, extent: Extent) {
         buffer[..length].fill_with(|| script.byte());
         length
     } else {
-        forged(kind, script, extent).encode(None, &mut buffer)
+        let own = robot.status();
+        let aims = [Some(own.position), own.goal];
+        forged(kind, script, extent, aims).encode(None, &mut buffer)
     };
     let before = robot.map().clone();
     if robot.receive(&buffer[..length]).is_err() {
@@ -89,13 +179,14 @@ fn feed(robot: &mut Robot, script: &mut Script<'_>, extent: Extent) {
     }
 }
 
-fn forged(kind: u8, script: &mut Script<'_>, extent: Extent) -> Frame {
+fn forged(kind: u8, script: &mut Script<'_>, extent: Extent, aims: [Option<Cell>; 2]) -> Frame {
     let LinkConfig {
         origin_mm, cell_mm, ..
     } = LinkConfig::new();
     let mut cell = || {
         let (x, y) = (script.byte(), script.byte());
-        Cell::new((x % 22).into(), (y % 22).into())
+        let aim = aims.get(usize::from(x >> 6)).copied().flatten();
+        aim.unwrap_or(Cell::new((x % 22).into(), (y % 22).into()))
     };
     let status = Status {
         position: cell(),

@@ -94,7 +94,7 @@ fn main() -> ExitCode {
 
 fn soak(runs: u64) -> anyhow::Result<()> {
     shell::cargo(["test", "--release", "-p", "planner-core", "--lib"])
-        .args(["--", "every_robot_stops_with_a_complete_map"])
+        .args(["--", "every_robot"])
         .env("PROPTEST_CASES", runs.to_string())
         .run()
 }

@@ -188,7 +188,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
     ) -> Outcome {
         let end = work.saturating_add(slice);
         if let Stage::Route { goal } = self.stage
-            && !around.map.is_frontier(goal)
+            && !around.is_goal(goal)
         {
             self.stage = Stage::Idle;
             return Outcome::Lost;
@@ -236,7 +236,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
                 hits &= !self.wave.taken(at);
             }
             if mine && hits != 0 {
-                hits &= !around.closed.mask(at, around.now);
+                hits &= !around.aside.cells(at);
             }
             if hits == 0 {
                 let served = self.served;

@@ -4,21 +4,89 @@
 //! Near decisions (`window`) choose among the frontiers around the robot; where
 //! it has none of its own there, a search over the whole map (`far`) runs in
 //! the background, with what the near decision leaves of the tick's slice, while the
-//! robot keeps walking. What makes it
-//! complete is the *commitment* rule: since the robot last learnt anything, it
-//! may change to a longer plan only a fixed number of times.
+//! robot keeps walking. What makes it complete is the *commitment* rule: since the robot
+//! last learnt anything, it may change to a longer plan only a fixed number of times.
 //!
-//! Let U be the number of cells unknown to the robot; it never grows. While a
-//! frontier can be reached, U falls in bounded time: take (changes left, steps
-//! left) in lexicographic order; a step lowers the second, a change to a longer
-//! plan the first, a search ends after a number of slices bounded by the map, and
-//! at the end of a plan the robot stands on a frontier cell and sees its unknown
-//! neighbour. If no frontier can be reached, the cells known around the robot are
-//! closed off by obstacles: it has seen everything that it can reach. Messages
-//! were not used: each robot alone is complete, and any message, late, twice, out
-//! of order or lost, only makes U fall sooner.
+//! # Premise
+//! - What a look shows free or blocked is so, and stays so. Cells may refuse a step all
+//!   the same, for a while or for ever, and no look need show that.
+//! - The robot is where its poses say, or they lie off the grid, for a while.
+//! - The robot can stand on any cell that is free and does not refuse.
+//! - For the reason "complete" alone: of the four neighbours of a cell that the robot
+//!   stands on, each is shown free or blocked by one of the looks that it makes there,
+//!   after it was asked to turn to it ([`Wait::Look`]).
+//!
+//! Nothing is asked of messages, hints or the other robots: what is told of cells is
+//! taken as seen, and whether it was a lie no robot can tell (docs/wire-format.md).
+//!
+//! # Why every robot stops
+//! Let K be twice the number of unknown cells and once that of free ones. Whatever is
+//! learnt, seen or heard, lowers K; nothing raises it. (A robot that is told that its own
+//! place is an obstacle learns nothing; see `learn_from_others`.) So there are at most as
+//! many *spells*, stretches in which nothing is learnt, as twice the cells, and it is to be
+//! shown that in each the robot stops or learns after a bounded number of ticks. Take, in
+//! lexicographic order:
+//!
+//! 1. rounds left (`aside`). A round ends by time or when nothing else is left, and its
+//!    number falls only when something is learnt;
+//! 2. cells not set aside in this round: each refusal and each look that was in vain
+//!    lowers it, and only the next round raises it;
+//! 3. changes left: the tokens, and one more for a plan that was made before the spell
+//!    began or a cell was set aside, whose length may be wrong by now;
+//! 4. steps left of the plan; without a plan, looks left where the robot stands.
+//!
+//! Every tick lowers this, or a search or a wait goes on that ends by itself:
+//! - *Stopped, off the grid, or nothing seen yet*: nothing is decided.
+//! - *No frontier on the map*: it stops.
+//! - *The plan is dropped*: its goal was reached; or its goal or its next cell was set
+//!   aside, which lowered 2. (Were either known otherwise now, something was learnt.)
+//! - *Without a plan on a frontier cell* (`look`): a look is made; after the last one the
+//!   cell is set aside.
+//! - *The near decision is due and finds a frontier of the robot's own* (`decide_near`).
+//!   It becomes the plan: if it is longer, a token is gone; if not, a step follows. Or it
+//!   is refused: then the way at hand goes on, with a step; or the way at hand is used
+//!   up, and nothing cancels the search for its rest.
+//! - *It finds none of its own*: the plan at hand, another's frontier or none is kept, and
+//!   the far search goes on, or begins where none is under way.
+//! - *The far search* does a quarter of a slice at least in every tick without a new
+//!   plan, and has a number of slices that the map bounds: each of its rounds visits each
+//!   tile once for each layer and label at most, each but the last of a pass serves a
+//!   robot, there are a few passes, then a wave of the robot's own, then a route. Its
+//!   end is one of these:
+//!   - *A way was found*: as with the near decision. The rest of the way at hand is
+//!     always taken: only for a plan of before the spell, or before a cell was set aside,
+//!     can it be longer than what was left.
+//!   - *A way was lost*: something was learnt or set aside since it was begun; a plan
+//!     without a way is dropped.
+//!   - *Nothing is left* (`conclude`): if the map or what is set aside has changed since
+//!     it began, it begins again. Otherwise the robot stops, waits for the end of the
+//!     round, or begins the next one.
+//! - *A step* lowers 4 ([`Motion::Moved`]) or 2 ([`Motion::Blocked`]); if it was held
+//!   ([`Motion::Held`]), the robot counts up to [`Config::holds`] until it made a step, and
+//!   takes the last one for a refusal.
+//!
+//! Paths that are shorter than the way (256 steps, [`Config::way`]) change nothing: their
+//! rest is a search that ends. Hints only choose which frontier comes first, and which
+//! near ones are another's: each case above holds whatever they are.
+//!
+//! Let D be the longest way on the map, F the ticks of a far search, N the cells, p the
+//! patience: a spell has at most p·N·(tokens + 2)·(D + F + 4·looks + holds) ticks, and
+//! 4·2ᵖ of waiting.
+//!
+//! # Why its reason is true
+//! The robot's last wave covered every cell that free cells connect with it. If nothing was
+//! set aside, it met no frontier, so these cells are closed off by obstacles: everything
+//! that can be reached is known. In the last round every cell that was closed refused a
+//! step in this very round, and no time reopens it: whatever can be reached past them was
+//! reached, however many there are.
+//!
+//! Where robots may not share a cell, roles walk and bodies stay ([`exchange`]): the
+//! lowest role that is active is never pushed back and never waits, so it stops; then the
+//! next one is the lowest. Bodies set cells aside each for itself; a role that turned
+//! round because of one tells the next body, so each body is told of each cell once in a
+//! round at most.
 
-mod closed;
+mod aside;
 mod far;
 mod lean;
 mod maybe;
@@ -33,11 +101,11 @@ mod window;
 pub use others::MAX_OTHERS;
 pub use role::{Role, exchange};
 
-use closed::ClosedCells;
+use aside::{Aside, Refusal, Verdict};
 use far::{FarSearch, Outcome};
 use maybe::Maybe;
 use others::Others;
-use role::Plan;
+use role::{Plan, Shunned};
 use surroundings::Surroundings;
 use window::{Aim, Candidate, NearSearch};
 
@@ -45,7 +113,7 @@ use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
 use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
-use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop};
+use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::Sighting;
 
 /// How an explorer decides. One configuration serves a whole fleet; none of it
@@ -67,8 +135,18 @@ pub struct Config {
     pub far_pause: u32,
     /// Ticks after which a robot that was not heard of is forgotten.
     pub memory: u32,
-    /// Refusals after which a cell is not waited for any more, if nothing else is left.
+    /// Rounds of trying cells that refuse a step, and as often waiting for them, 4, 8, 16
+    /// … ticks, before the robot gives them up; at least 1. See `aside`.
     pub patience: u8,
+    /// Looks in each direction that shows nothing before a frontier is set aside; 1 to 50,
+    /// others are brought into these bounds.
+    pub looks: u8,
+    /// Ticks on end in which a robot in the way is let go first; then its cell counts as
+    /// one that refuses.
+    pub holds: u8,
+    /// Steps of the way that are remembered, 1 to 256: where they are used up, the robot
+    /// searches for the rest. Small numbers are for tests.
+    pub way: u16,
     /// How the radio is used.
     pub link: LinkConfig,
 }
@@ -84,6 +162,9 @@ impl Config {
             far_pause: 8,
             memory: 256,
             patience: 8,
+            looks: 2,
+            holds: 64,
+            way: path::CAPACITY as u16,
             link: LinkConfig::new(),
         }
     }
@@ -106,6 +187,9 @@ impl Config {
         self.slice / 4 + 1
     }
 }
+
+/// The most looks in each of four directions that a byte counts.
+const MOST_LOOKS: u8 = 50;
 
 impl Default for Config {
     fn default() -> Self {
@@ -138,10 +222,19 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     last_goal: Option<Cell>,
     /// No new far search before this tick while there is a plan.
     far_again: u32,
-    /// Whether the map has changed, or a cell was closed, since the far search began.
+    /// Whether the map has changed, or what is set aside, since the far search began.
     far_is_doubtful: bool,
     /// Whether the last tick asked for the first step of the plan.
     stepping: bool,
+    /// Whether the last pose lay off the grid.
+    is_astray: bool,
+    /// Whether others told a cell that was not known.
+    has_heard: bool,
+    /// Looks from where the body stands that were asked for, whatever its role.
+    looks: u8,
+    /// Steps that were held since the last one that was made.
+    holds: u8,
+    waiting: Maybe<Wait>,
     work: u32,
 }
 
@@ -158,12 +251,15 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 far_pause: 0,
                 memory: 0,
                 patience: 0,
+                looks: 0,
+                holds: 0,
+                way: 0,
                 link: LinkConfig::vacant(),
             },
             id: RobotId(0),
             around: Surroundings {
                 map: Map::vacant(),
-                closed: ClosedCells::new(),
+                aside: Aside::new(),
                 position: Cell::new(0, 0),
                 now: 0,
             },
@@ -176,6 +272,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             far_again: 0,
             far_is_doubtful: false,
             stepping: false,
+            is_astray: false,
+            has_heard: false,
+            looks: 0,
+            holds: 0,
+            waiting: Maybe::Nothing,
             work: 0,
         }
     }
@@ -183,7 +284,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// An explorer on a grid of `extent`, standing on `start`.
     ///
     /// # Errors
-    /// The grid does not fit the map.
+    /// The grid does not fit the map, or the start lies outside of the grid.
     pub fn new(
         config: Config,
         id: RobotId,
@@ -198,7 +299,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// Starts anew, in place.
     ///
     /// # Errors
-    /// The grid does not fit the map; the explorer is then unchanged.
+    /// As [`new`](Self::new); the explorer is then unchanged.
     pub fn reset(
         &mut self,
         config: Config,
@@ -207,7 +308,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         start: Cell,
     ) -> Result<(), ExtentError> {
         self.around.map.reset_with(extent, start)?;
-        self.around.closed = ClosedCells::new();
+        self.around.aside.reset();
         self.around.position = start;
         self.around.now = 0;
         self.config = config;
@@ -220,16 +321,35 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far_again = 0;
         self.far_is_doubtful = false;
         self.stepping = false;
+        self.is_astray = false;
+        self.has_heard = false;
+        self.looks = 0;
+        self.holds = 0;
+        self.waiting = Maybe::Nothing;
         self.work = 0;
         Ok(())
     }
 
-    fn learn(&mut self, learnt: Learnt) -> Learnt {
+    fn learn(&mut self, learnt: Learnt) {
         if learnt.anything() {
             self.role.used = 0;
+            self.role.shunned = Maybe::Nothing;
+            self.looks = 0;
             self.far_is_doubtful = true;
-            self.around.closed.renew();
+            self.around.aside.renew();
         }
+    }
+
+    /// As [`learn`](Self::learn), of what others told. Where they call the robot's own
+    /// place an obstacle, its place wins, and nothing was learnt by that.
+    fn learn_from_others(&mut self, mut learnt: Learnt) -> Learnt {
+        let position = self.around.position;
+        if self.around.map.extent().contains(position) && self.around.map.is_obstacle(position) {
+            self.around.map.stand(position);
+            learnt.closed = learnt.closed.saturating_sub(1);
+        }
+        self.has_heard |= learnt.cells > 0;
+        self.learn(learnt);
         learnt
     }
 
@@ -237,9 +357,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn search_far(&mut self) -> Outcome {
         if self.far.is_idle() {
             return Outcome::Searching;
-        }
-        if self.around.closed_now().next().is_some() {
-            self.far_is_doubtful = true;
         }
         let left = self.config.slice.saturating_sub(self.work + far::WAY_WORK);
         let left = left.max(self.config.least_far());
@@ -251,13 +368,48 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far.start_sweep(self.id, &self.others, &self.around);
     }
 
-    /// The plan, if it is still worth following.
-    fn valid_plan(&self) -> Option<&Plan> {
-        self.role.plan.as_ref().filter(|plan| {
-            plan.remaining > 0
-                && self.around.map.is_frontier(plan.goal)
-                && !self.around.is_closed(plan.goal)
-        })
+    /// Whether there is a plan that is worth following.
+    fn has_plan(&self) -> bool {
+        let Some(plan) = &self.role.plan else {
+            return false;
+        };
+        plan.remaining > 0
+            && plan.goal != self.around.position
+            && self.around.is_goal(plan.goal)
+            && self.around.is_open(plan.goal)
+            && (plan.path.is_empty() || self.next_step().is_some())
+    }
+
+    /// Drops the plan, if there is one, and notes which cell set aside is to blame.
+    fn drop_plan(&mut self) {
+        let Some(plan) = self.role.plan.take() else {
+            return;
+        };
+        let is_shut = |cell: &Cell| self.around.map.is_free(*cell) && !self.around.is_open(*cell);
+        let next = plan.path.first();
+        let next = next.map(|step| self.around.position.step(step));
+        if let Some(shut) = next.into_iter().chain([plan.goal]).find(is_shut) {
+            self.role.shun(Shunned::Closed(shut));
+        } else if self.around.map.is_frontier(plan.goal) && !self.around.is_goal(plan.goal) {
+            self.role.shun(Shunned::Unseen(plan.goal));
+        }
+    }
+
+    /// Sets aside what made the role turn round in another body.
+    fn set_aside(&mut self, shunned: Shunned) {
+        match shunned {
+            Shunned::Closed(cell) => {
+                let now = self.around.now;
+                self.around.aside.refuse(cell, Refusal::Told, now);
+            }
+            Shunned::Unseen(cell) => {
+                let Some(side) = self.around.unknown_sides(cell).next() else {
+                    return;
+                };
+                self.around.aside.show_nothing(cell, cell.step(side));
+            }
+        }
+        self.far_is_doubtful = true;
     }
 
     /// Decides among the frontiers nearby, and which far search is to run if none of
@@ -281,10 +433,17 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             let mine = self
                 .near
                 .best(&self.around, &aim, bonus, others, &mut self.work);
-            if let Some(candidate) = mine {
-                self.far.cancel();
-                self.adopt_plan(candidate);
-                return Near::Mine;
+            match mine {
+                Some(candidate) if self.adopt_plan(candidate) => {
+                    self.far.cancel();
+                    return Near::Mine;
+                }
+                // Refused, and the way at hand goes on.
+                Some(_) if self.next_step().is_some() => {
+                    self.far.cancel();
+                    return Near::Mine;
+                }
+                _ => {}
             }
         }
         let plan = self.role.plan.as_ref();
@@ -313,39 +472,95 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         Near::Nothing
     }
 
-    /// The commitment rule: a longer plan than the one at hand costs a token.
-    fn adopt_plan(&mut self, candidate: Candidate) {
+    /// The commitment rule: a longer plan than the one at hand costs a token, unless it
+    /// is the rest of the way at hand. Says whether the candidate is the plan now.
+    fn adopt_plan(&mut self, candidate: Candidate) -> bool {
         self.role.since = 0;
         if candidate.path.is_empty() {
-            return;
+            return false;
         }
         if let Some(plan) = &self.role.plan
             && candidate.length > plan.remaining
+            && !(plan.path.is_empty() && candidate.goal == plan.goal)
         {
             if self.role.used >= self.config.tokens {
-                return;
+                return false;
             }
             self.role.used += 1;
         }
+        let mut path = candidate.path;
+        path.truncate(self.config.way.max(1));
         self.last_goal = Some(candidate.goal);
         self.role.plan = Some(Plan {
             goal: candidate.goal,
             remaining: candidate.length,
-            path: candidate.path,
+            path,
         });
+        true
     }
 
-    /// The far search met no frontier.
+    /// The far search met no frontier that is worth a look.
     fn conclude(&mut self) -> Option<Stop> {
-        let frontiers = self.around.map.frontiers();
-        if !self.far_is_doubtful {
-            return Some(Stop::Enclosed { frontiers });
+        if self.far_is_doubtful {
+            return None;
         }
-        let hopeless = self
+        let frontiers = self.around.map.frontiers();
+        let now = self.around.now;
+        match self
             .around
-            .closed
-            .hopeless(self.config.patience, self.around.now);
-        hopeless.map(|at| Stop::Blocked { frontiers, at })
+            .aside
+            .verdict(self.config.patience, frontiers, now)
+        {
+            Verdict::Nothing if self.has_heard => Some(Stop::Enclosed { frontiers }),
+            Verdict::Nothing => Some(Stop::OutOfReach { frontiers }),
+            Verdict::Blocked(at) => Some(Stop::Blocked { frontiers, at }),
+            Verdict::Held(at) => Some(Stop::Held { frontiers, at }),
+            Verdict::Unseen(at) => Some(Stop::Unseen { frontiers, at }),
+            Verdict::Wait => {
+                self.waiting = Maybe::Just(Wait::Closed);
+                None
+            }
+            Verdict::Again => {
+                self.around.aside.next_round(self.config.patience);
+                None
+            }
+        }
+    }
+
+    /// A robot on a frontier cell without a plan looks in every direction that shows
+    /// nothing, in turn, and then sets the cell aside. The direction to look in, if any.
+    fn look(&mut self) -> Option<Direction> {
+        let here = self.around.position;
+        if self.role.plan.is_some() || !self.around.is_goal(here) {
+            return None;
+        }
+        let sides = self.around.unknown_sides(here).count().max(1);
+        let made = usize::from(self.looks);
+        if made < sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS)) {
+            self.looks = self.looks.saturating_add(1);
+            return self.around.unknown_sides(here).nth(made % sides);
+        }
+        self.looks = 0;
+        let shunned = Shunned::Unseen(here);
+        self.role.shun(shunned);
+        self.set_aside(shunned);
+        None
+    }
+
+    /// A step was refused: the plan leads nowhere, and others may be as good now.
+    fn refuse(&mut self, cell: Cell, why: Refusal) {
+        self.around.aside.refuse(cell, why, self.around.now);
+        self.far_is_doubtful = true;
+        self.role.shun(Shunned::Closed(cell));
+        self.role.plan = None;
+        self.role.used = 0;
+        self.holds = 0;
+        self.far.cancel();
+    }
+
+    fn wait(&mut self, reason: Wait) -> Action {
+        self.waiting = Maybe::Just(reason);
+        Action::Wait
     }
 
     fn stop(&mut self, stop: Stop) -> Action {
@@ -359,21 +574,33 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn next_step(&self) -> Option<Direction> {
         let step = self.role.plan.as_ref()?.path.first()?;
         let next = self.around.position.step(step);
-        (self.around.map.is_free(next) && !self.around.is_closed(next)).then_some(step)
+        self.around.is_open(next).then_some(step)
     }
 }
 
 impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
-        if sighting.centre() != self.around.position {
-            // Carried elsewhere: the way starts somewhere else now.
-            self.around.position = sighting.centre();
+        let centre = sighting.centre();
+        self.is_astray = !self.around.map.extent().contains(centre);
+        if self.is_astray {
+            return Learnt::default();
+        }
+        let is_carried = centre != self.around.position;
+        if is_carried {
+            // The way starts somewhere else now.
+            self.around.position = centre;
             self.role.plan = None;
+            self.looks = 0;
         }
         let learnt = self.around.map.observe(sighting);
+        if is_carried && learnt.anything() {
+            // What it stopped for was true of another place.
+            self.resume();
+        }
         self.around.map.visit(self.around.position);
         self.link.announce(&mut self.around.map);
-        self.learn(learnt)
+        self.learn(learnt);
+        learnt
     }
 
     fn tick(&mut self) -> Action {
@@ -381,20 +608,30 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.link.tick();
         self.work = 0;
         self.stepping = false;
+        self.waiting = Maybe::Nothing;
+        self.role.age();
         if let Some(stop) = self.role.stopped.get() {
             return Action::Stop(stop);
         }
-        if self.around.map.frontiers() == 0 {
+        if self.is_astray {
+            return self.wait(Wait::Pose);
+        }
+        if !self.around.map.is_known(self.around.position) {
             // Nothing seen yet is not the same as nothing left.
-            if self.around.map.is_known(self.around.position) {
-                return self.stop(Stop::nothing_left(self.around.map.free_edge_cells()));
-            }
-            return Action::Wait;
+            return self.wait(Wait::Sight);
+        }
+        if self.around.map.frontiers() == 0 {
+            let edge = self.around.map.free_edge_cells();
+            return self.stop(Stop::nothing_left(edge));
         }
         self.others.forget(self.around.now, self.config.memory);
-        let plan = self.valid_plan();
-        if plan.is_none_or(|plan| !plan.path.is_empty() && self.next_step().is_none()) {
-            self.role.plan = None;
+        let now = self.around.now;
+        self.far_is_doubtful |= self.around.aside.tick(self.config.patience, now);
+        if !self.has_plan() {
+            self.drop_plan();
+        }
+        if let Some(direction) = self.look() {
+            return self.wait(Wait::Look(direction));
         }
         let due = self.role.since >= self.config.d_max || self.next_step().is_none();
         let near = if due {
@@ -406,7 +643,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             match self.search_far() {
                 Outcome::Searching => {}
                 Outcome::Found(candidate) => {
-                    self.far_again = self.around.now.saturating_add(self.config.far_pause);
+                    self.far_again = now.saturating_add(self.config.far_pause);
                     if near == Near::Theirs {
                         self.role.plan = None;
                     }
@@ -431,14 +668,25 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                 self.stepping = true;
                 Action::Move(step)
             }
-            None => Action::Wait,
+            None => match self.waiting.get() {
+                Some(reason) => self.wait(reason),
+                None => self.wait(Wait::Search),
+            },
         }
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        self.waiting.get()
     }
 
     fn resume(&mut self) {
         self.role.stopped = Maybe::Nothing;
+        self.role.plan = None;
         self.role.used = 0;
-        self.around.closed = ClosedCells::new();
+        self.role.shunned = Maybe::Nothing;
+        self.around.aside.reset();
+        self.looks = 0;
+        self.holds = 0;
         self.far.cancel();
     }
 
@@ -452,16 +700,17 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         match motion {
             Motion::Moved => {
                 self.around.position = next;
-                self.around.closed.entered(next);
+                self.looks = 0;
                 self.role.make_step();
+                self.holds = 0;
             }
-            Motion::Blocked => {
-                self.around.closed.refuse(next, self.around.now);
-                self.role.plan = None;
-                self.role.used = 0;
-                self.far.cancel();
+            Motion::Blocked => self.refuse(next, Refusal::Cell),
+            Motion::Held => {
+                self.holds = self.holds.saturating_add(1);
+                if self.holds >= self.config.holds {
+                    self.refuse(next, Refusal::Robot);
+                }
             }
-            Motion::Held => {}
         }
     }
 
@@ -487,8 +736,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let heard = self.link.receive(bytes, &mut self.around.map)?;
-        self.learn(heard.learnt);
+        let mut heard = self.link.receive(bytes, &mut self.around.map)?;
+        heard.learnt = self.learn_from_others(heard.learnt);
         if let Some(status) = heard.status {
             self.hear(heard.from, status);
         }
@@ -501,7 +750,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
         let learnt = self.around.map.join_tiles(other, tiles);
-        self.learn(learnt)
+        self.learn_from_others(learnt)
     }
 
     fn hear(&mut self, id: RobotId, status: Status) {
@@ -526,7 +775,11 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn adopt(&mut self, role: Role) {
         self.role = role;
         self.stepping = false;
+        self.holds = 0;
         self.far.cancel();
+        if let Some(shunned) = role.shunned.get() {
+            self.set_aside(shunned);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::cell::Direction;
 
 /// Steps that a path holds.
-pub(crate) const CAPACITY: usize = 256;
+pub(super) const CAPACITY: usize = 256;
 
 /// The next steps of a way, at most 256: the rest of a longer one is looked for
 /// when these are used up. 68 bytes.
@@ -28,6 +28,11 @@ impl Path {
 
     pub(crate) const fn len(&self) -> u32 {
         self.length as u32
+    }
+
+    /// Keeps so many of the first steps at most.
+    pub(crate) fn truncate(&mut self, length: u16) {
+        self.length = self.length.min(length);
     }
 
     pub(crate) const fn is_empty(&self) -> bool {
@@ -85,11 +90,11 @@ mod tests {
     proptest! {
         #[test]
         fn a_path_is_a_queue_that_forgets_its_end(
-            operations in proptest::collection::vec((0u8..3, 0u8..4), 0..900),
+            operations in proptest::collection::vec((0u8..4, 0u8..4, 200u16..300), 0..900),
         ) {
             let mut path = Path::new();
             let mut oracle = VecDeque::new();
-            for (operation, step) in operations {
+            for (operation, step, limit) in operations {
                 let step = Direction::from_index(step);
                 match operation {
                     0 => {
@@ -103,6 +108,10 @@ mod tests {
                         if room {
                             oracle.push_back(step);
                         }
+                    }
+                    2 => {
+                        path.truncate(limit);
+                        oracle.truncate(limit.into());
                     }
                     _ => prop_assert_eq!(path.pop_front(), oracle.pop_front()),
                 }

@@ -20,6 +20,18 @@ pub(crate) struct Plan {
     pub(crate) path: Path,
 }
 
+/// A cell that made a role turn round. Bodies do not share what they set aside, so the
+/// role takes it along for 255 ticks: else two bodies could send it to and fro between
+/// them for ever.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Shunned {
+    /// It refused a step.
+    Closed(Cell),
+    /// A frontier cell that shows nothing.
+    Unseen(Cell),
+}
+
 /// What a robot is about to do. Robot `k` starts with role `k`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -30,6 +42,11 @@ pub struct Role {
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
     pub(crate) used: u8,
+    /// Whether it has reached its goal and has not decided since.
+    pub(crate) has_arrived: bool,
+    pub(crate) shunned: Maybe<Shunned>,
+    /// Ticks since it shunned that.
+    pub(crate) shunned_for: u8,
     pub(crate) stopped: Maybe<Stop>,
 }
 
@@ -40,6 +57,9 @@ impl Role {
             plan: None,
             since: 0,
             used: 0,
+            has_arrived: false,
+            shunned: Maybe::Nothing,
+            shunned_for: 0,
             stopped: Maybe::Nothing,
         }
     }
@@ -81,10 +101,25 @@ impl Role {
         Some(here.step(plan.path.first()?))
     }
 
+    pub(crate) fn shun(&mut self, cell: Shunned) {
+        self.shunned = Maybe::Just(cell);
+        self.shunned_for = 0;
+    }
+
+    /// A tick begins: what the role shunned long ago it forgets.
+    pub(crate) fn age(&mut self) {
+        self.has_arrived = false;
+        match self.shunned_for.checked_add(1) {
+            Some(ticks) => self.shunned_for = ticks,
+            None => self.shunned = Maybe::Nothing,
+        }
+    }
+
     pub(crate) fn make_step(&mut self) {
         if let Some(plan) = &mut self.plan {
             plan.path.pop_front();
             plan.remaining = plan.remaining.saturating_sub(1);
+            self.has_arrived = plan.remaining == 0;
         }
         self.since = self.since.saturating_add(1);
     }
@@ -101,13 +136,17 @@ impl Role {
 /// `here`, is held by the body of role `theirs` on `there`: the two roles for
 /// these two bodies, in this order, or `None` if `mine` waits.
 ///
-/// 1. Head-on: exchange, both have made their step.
-/// 2. The other is passive, or gives way: exchange; it gets its cell put in front
+/// 1. The other has just reached its goal: wait, so that it can look from there.
+/// 2. Head-on: exchange, both have made their step.
+/// 3. The other is passive, or gives way: exchange; it gets its cell put in front
 ///    of its path.
-/// 3. Else wait: no new plan, nothing is used up.
+/// 4. Else wait: no new plan, nothing is used up.
 ///
 /// The bodies then join each other's maps, and neither role acts again in this tick.
 pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
+    if theirs.has_arrived {
+        return None;
+    }
     let (mut mine, mut theirs) = (*mine, *theirs);
     let head_on = theirs.next_cell(there) == Some(here);
     let passive = theirs.next_cell(there).is_none();

@@ -22,7 +22,73 @@ struct Scene {
     /// Steps refused, out of 256, for a while.
     refusals: u8,
     solid: bool,
+    trouble: Trouble,
     seed: u64,
+}
+
+/// What a robot cannot rely on.
+#[derive(Clone, Debug, Default)]
+struct Trouble {
+    /// Robots that only tell where they are and go, and what each is up to.
+    ghosts: Vec<Ghost>,
+    /// Cells of which no look says anything.
+    silent: Vec<Cell>,
+    /// Cells that refuse every step, and whether as a robot that goes first.
+    refusing: Vec<(Cell, bool)>,
+    /// Degrees in which the sensor looks; 0: all around.
+    view: u16,
+    /// Ticks in which a robot's poses lie off the grid: robot, first, number.
+    astray: Vec<(usize, u32, u32)>,
+    /// Of the tiles that could be seen, those out of 256 that are told before the start.
+    told: u8,
+}
+
+/// A robot that is not there, told of so as to do harm.
+#[derive(Clone, Copy, Debug)]
+struct Ghost {
+    id: u8,
+    /// What it claims, see [`Ghost::status`].
+    aim: u8,
+    /// Ticks between two changes of its mind.
+    period: u32,
+    /// It speaks only until then.
+    silence: u32,
+}
+
+impl Ghost {
+    fn status(self, robot: &Small, tick: u32, dice: &mut Dice) -> Status {
+        let here = robot.around.position;
+        let goal = robot.status().goal;
+        let far = Cell::new(
+            i16::from(dice.roll()) % robot.map().extent().width as i16,
+            i16::from(dice.roll()) % robot.map().extent().height as i16,
+        );
+        let is_turn = tick / self.period % 2 == 0;
+        let (position, goal) = match self.aim {
+            // On the robot, on its goal, now here and now there, on its goal as soon as
+            // its way ends or it has no more changes, at random, or near it.
+            0 => (here, None),
+            1 => (goal.unwrap_or(here), goal),
+            2 if is_turn => (goal.unwrap_or(far), None),
+            2 => (far, None),
+            3 if robot.role.remaining() < 6 || robot.role.used >= robot.config.tokens => {
+                (goal.unwrap_or(far), None)
+            }
+            3 => (far, Some(here)),
+            4 => (far, Some(far)),
+            _ => (here.step(Direction::from_index(dice.roll())), goal),
+        };
+        let is_done = self.aim == 2 && tick % 7 == 0;
+        Status {
+            position,
+            goal,
+            activity: if is_done {
+                Activity::Stopped
+            } else {
+                Activity::Exploring
+            },
+        }
+    }
 }
 
 impl Scene {
@@ -31,19 +97,68 @@ impl Scene {
             || self.walls[cell.y as usize * usize::from(self.extent.width) + cell.x as usize]
     }
 
-    fn reachable(&self, from: Cell) -> Vec<Cell> {
+    /// The cells that a way leads to over free cells that `passes` lets through.
+    fn reachable(&self, from: Cell, passes: impl Fn(Cell) -> bool) -> Vec<Cell> {
         let mut found = vec![from];
         let mut next = 0;
         while let Some(&cell) = found.get(next) {
             for direction in Direction::ALL {
                 let beside = cell.step(direction);
-                if !self.is_blocked(beside) && !found.contains(&beside) {
+                if !self.is_blocked(beside) && !found.contains(&beside) && passes(beside) {
                     found.push(beside);
                 }
             }
             next += 1;
         }
         found
+    }
+
+    fn is_silent(&self, cell: Cell) -> bool {
+        self.trouble.silent.contains(&cell)
+    }
+
+    fn refuses(&self, cell: Cell) -> Option<Motion> {
+        let found = self.trouble.refusing.iter().find(|(at, _)| *at == cell);
+        found.map(|&(_, robot)| if robot { Motion::Held } else { Motion::Blocked })
+    }
+
+    /// What a robot that looks to `heading` sees.
+    fn look(&self, from: Cell, heading: Direction) -> Sighting {
+        let all = look(from, self.radius, |cell| self.is_blocked(cell));
+        let is_in_view = |cell: &Cell| {
+            let (x, y) = heading.delta();
+            let (dx, dy) = (f64::from(cell.x - from.x), f64::from(cell.y - from.y));
+            let along = dx * f64::from(x) + dy * f64::from(y);
+            let across = dx * f64::from(y) - dy * f64::from(x);
+            let angle = across.atan2(along).abs().to_degrees();
+            self.trouble.view == 0 || angle <= f64::from(self.trouble.view) / 2.0
+        };
+        let shows = |cell: &Cell| is_in_view(cell) && !self.is_silent(*cell);
+        let mut sighting = Sighting::new(from);
+        for cell in all.free_cells().filter(shows) {
+            sighting.see_free(cell);
+        }
+        for cell in all.blocked_cells().filter(shows) {
+            sighting.see_blocked(cell);
+        }
+        sighting
+    }
+
+    /// Tells a robot, truthfully, tiles of the place where it will be.
+    fn tell(&self, robot: &mut Small, start: Cell, dice: &mut Dice) {
+        let mut told = Map::<3, 3>::new(self.extent).unwrap();
+        for cell in self.reachable(start, |_| true) {
+            if !self.is_silent(cell) {
+                told.observe(&self.look(cell, Direction::East));
+            }
+        }
+        let mut tiles = TileSet::new();
+        for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
+            if dice.roll() < self.trouble.told {
+                tiles.insert(TileIndex { x, y });
+            }
+        }
+        robot.join(&told, &tiles);
     }
 }
 
@@ -63,37 +178,87 @@ impl Dice {
     }
 }
 
-fn scene() -> impl Strategy<Value = Scene> {
+fn trouble(cells: usize, width: u16, robots: usize) -> impl Strategy<Value = Trouble> {
+    let cell = move || {
+        (0..cells).prop_map(move |i| {
+            let (x, y) = (i % usize::from(width), i / usize::from(width));
+            Cell::new(x as i16, y as i16)
+        })
+    };
+    let ghost = (
+        prop_oneof![Just(0u8), Just(100), any::<u8>()],
+        0u8..6,
+        1u32..9,
+        prop_oneof![0u32..200, Just(u32::MAX)],
+    )
+        .prop_map(|(id, aim, period, silence)| Ghost {
+            id,
+            aim,
+            period,
+            silence,
+        });
+    let some = |most| prop_oneof![Just(0usize), Just(0), 0..=most];
+    let view = prop_oneof![Just(0u16), Just(0), Just(180), Just(90), Just(62), Just(45)];
+    (
+        prop::collection::vec(ghost, 0..4),
+        some(cells / 8).prop_flat_map(move |n| prop::collection::vec(cell(), 0..=n)),
+        some(cells / 3)
+            .prop_flat_map(move |n| prop::collection::vec((cell(), any::<bool>()), 0..=n)),
+        view,
+        prop::collection::vec((0..robots, 0u32..300, 1u32..50), 0..3),
+        prop_oneof![Just(0u8), any::<u8>()],
+    )
+        .prop_map(|(ghosts, silent, refusing, view, astray, told)| Trouble {
+            ghosts,
+            silent,
+            refusing,
+            view,
+            astray,
+            told,
+        })
+}
+
+fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
     (4u16..=20, 4u16..=20, 0.0..0.55f64, 1usize..=6, any::<u64>()).prop_flat_map(
-        |(width, height, share, robots, seed)| {
+        move |(width, height, share, robots, seed)| {
             let cells = usize::from(width) * usize::from(height);
+            let disturbance = (
+                prop_oneof![Just(0u8), 0u8..100],
+                any::<bool>(),
+                trouble(cells, width, robots),
+            );
             (
                 proptest::collection::vec(proptest::bool::weighted(share), cells),
                 proptest::collection::vec(0..cells, robots),
                 1u8..=8,
-                prop_oneof![Just(1u32), Just(4), 64u32..2000],
+                // A search of one tile a tick takes hundreds of ticks, and trouble many.
+                prop_oneof![Just(1u32), Just(4), 64u32..2000]
+                    .prop_map(move |slice| if is_troubled { slice.max(64) } else { slice }),
+                prop_oneof![Just(8u16), Just(256)],
                 prop_oneof![Just(0u32), Just(1), 2u32..50],
-                prop_oneof![Just(0u8), 0u8..100],
-                any::<bool>(),
+                disturbance,
             )
                 .prop_map(
-                    move |(mut walls, starts, radius, slice, sync, refusals, solid)| {
+                    move |(mut walls, starts, radius, slice, way, sync, rest)| {
+                        let (refusals, solid, mut trouble) = rest;
                         for &start in &starts {
                             walls[start] = false;
                         }
                         let mut start: Vec<_> = starts
                             .iter()
                             .map(|&i| {
-                                Cell::new(
-                                    (i % usize::from(width)) as i16,
-                                    (i / usize::from(width)) as i16,
-                                )
+                                let (x, y) = (i % usize::from(width), i / usize::from(width));
+                                Cell::new(x as i16, y as i16)
                             })
                             .collect();
                         if solid {
                             start.sort();
                             start.dedup();
                         }
+                        if !is_troubled {
+                            trouble = Trouble::default();
+                        }
+                        trouble.astray.retain(|(robot, ..)| *robot < start.len());
                         Scene {
                             extent: Extent::new(width, height),
                             walls,
@@ -101,11 +266,13 @@ fn scene() -> impl Strategy<Value = Scene> {
                             radius,
                             config: Config {
                                 slice,
+                                way,
                                 ..Config::new()
                             },
                             sync,
                             refusals,
                             solid,
+                            trouble,
                             seed,
                         }
                     },
@@ -129,7 +296,11 @@ fn run(scene: &Scene, limit: u32) -> Ended {
         .zip(0u8..)
         .map(|(&start, id)| Small::new(scene.config, RobotId(id), scene.extent, start).unwrap())
         .collect();
+    for (robot, &start) in robots.iter_mut().zip(&scene.start) {
+        scene.tell(robot, start, &mut dice);
+    }
     let mut at = scene.start.clone();
+    let mut heading = vec![Direction::East; robots.len()];
     let mut stops = vec![None; robots.len()];
     let all = {
         let mut all = TileSet::new();
@@ -142,8 +313,24 @@ fn run(scene: &Scene, limit: u32) -> Ended {
     };
     let mut ticks = 0;
     while stops.iter().any(Option::is_none) && ticks < limit {
-        for (robot, &cell) in robots.iter_mut().zip(&at) {
-            robot.observe(&look(cell, scene.radius, |c| scene.is_blocked(c)));
+        let ticks_now = ticks;
+        let is_astray = |robot: usize| {
+            let mut spells = scene.trouble.astray.iter();
+            spells
+                .any(|&(of, from, ticks)| of == robot && (from..from + ticks).contains(&ticks_now))
+        };
+        for (i, robot) in robots.iter_mut().enumerate() {
+            if is_astray(i) {
+                robot.observe(&Sighting::new(Cell::new(-7, 300)));
+            } else {
+                robot.observe(&scene.look(at[i], heading[i]));
+            }
+            for ghost in &scene.trouble.ghosts {
+                if ticks < ghost.silence && usize::from(ghost.id) != i {
+                    let status = ghost.status(robot, ticks, &mut dice);
+                    robot.hear(RobotId(ghost.id), status);
+                }
+            }
         }
         if scene.sync > 0 && ticks % scene.sync == 0 {
             let told: Vec<_> = robots
@@ -167,11 +354,16 @@ fn run(scene: &Scene, limit: u32) -> Ended {
             }
             match robots[i].tick() {
                 Action::Move(step) => {
+                    assert!(!is_astray(i), "a step from nowhere");
                     let next = at[i].step(step);
+                    heading[i] = step;
                     assert!(!scene.is_blocked(next), "a step into an obstacle at {next}");
                     assert!(robots[i].work() <= scene.config.work_bound());
                     let holder = at.iter().position(|&cell| cell == next);
                     match holder {
+                        _ if scene.refuses(next).is_some() => {
+                            robots[i].report(scene.refuses(next).unwrap());
+                        }
                         _ if ticks < CLEARED && dice.roll() < scene.refusals => {
                             robots[i].report(Motion::Blocked);
                         }
@@ -200,7 +392,11 @@ fn run(scene: &Scene, limit: u32) -> Ended {
                         }
                     }
                 }
-                Action::Wait => {}
+                Action::Wait => match robots[i].waiting() {
+                    Some(Wait::Look(direction)) => heading[i] = direction,
+                    Some(reason) => assert_eq!(is_astray(i), reason == Wait::Pose),
+                    None => panic!("it waits without a reason"),
+                },
                 Action::Stop(_) => {}
             }
         }
@@ -216,40 +412,108 @@ fn run(scene: &Scene, limit: u32) -> Ended {
     }
 }
 
-/// Every robot stops, says "complete", and knows everything that it can reach.
-fn assert_complete(scene: &Scene) -> Result<(), TestCaseError> {
+/// Every robot stops; what its sensor could show it from where it could go, it knows; and
+/// its reason says no more than is so.
+fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
     let ended = run(scene, 60_000);
     for ((robot, stop), &start) in ended.robots.iter().zip(&ended.stops).zip(&scene.start) {
         let stop = stop.ok_or_else(|| {
             TestCaseError::fail(std::format!(
-                "still running at {}\n{:?}\nthe plan {:?}",
+                "still running at {}, waiting for {:?}\n{:?}\nthe plan {:?}",
                 robot.around.position,
+                robot.waiting(),
                 robot.map(),
                 robot.role
             ))
         })?;
-        prop_assert!(stop.is_complete(), "{} {:?}", stop, robot.map());
+        let is_missing = |cell: &Cell| !robot.map().is_known(*cell);
+        let told = std::format!(
+            "robot {:?} from {start}: {stop}\n{:?}",
+            robot.id,
+            robot.map()
+        );
         // Exchanges of roles join the maps: everybody knows what its body can reach.
-        for cell in scene.reachable(start) {
-            prop_assert!(
-                robot.map().is_known(cell),
-                "{} is not known to {:?}",
-                cell,
-                robot.id
-            );
+        let all = scene.reachable(start, |_| true);
+        if stop.is_complete() {
+            prop_assert_eq!(all.iter().find(|cell| is_missing(cell)), None, "{}", told);
+        }
+        // What no look shows, nobody enters; what refuses, neither.
+        let passes = |cell| !scene.is_silent(cell) && scene.refuses(cell).is_none();
+        for cell in scene.reachable(start, passes) {
+            for seen in Direction::ALL.map(|direction| cell.step(direction)) {
+                let shows = scene.extent.contains(seen) && !scene.is_silent(seen);
+                prop_assert!(
+                    !shows || !is_missing(&seen),
+                    "{} is unknown to {}",
+                    seen,
+                    told
+                );
+            }
+        }
+        match stop {
+            Stop::Complete => {}
+            // Others may have told more since it stopped.
+            Stop::AtEdge { cells } => {
+                prop_assert!(
+                    cells > 0 && cells <= robot.map().free_edge_cells(),
+                    "{}",
+                    told
+                );
+            }
+            Stop::Enclosed { .. } => prop_assert!(scene.solid || robot.has_heard, "{}", told),
+            Stop::OutOfReach { .. } => {
+                let is_alone = scene.start.len() == 1;
+                prop_assert!(!is_alone || !robot.has_heard, "{}", told);
+            }
+            Stop::Blocked { at, .. } | Stop::Held { at, .. } => {
+                let is_held = matches!(stop, Stop::Held { .. });
+                let refused = scene.refuses(at);
+                prop_assert!(refused.is_some(), "{}", told);
+                // A role does not take along why a cell refused.
+                let is_so = (refused == Some(Motion::Held)) == is_held;
+                prop_assert!(scene.solid || is_so, "{}", told);
+            }
+            Stop::Unseen { at, .. } => {
+                prop_assert!(scene.is_silent(at) && is_missing(&at), "{}", told);
+            }
+            Stop::BackAtStart { .. } | Stop::NoTrace { .. } => prop_assert!(false, "{}", told),
+        }
+        if scene.start.len() == 1 && !matches!(stop, Stop::AtEdge { .. }) {
+            prop_assert_eq!(stop.left(), robot.map().frontiers(), "{}", told);
         }
     }
     Ok(())
 }
 
+/// As many small worlds as `PROPTEST_CASES` says, or these.
+fn soak() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES");
+    ProptestConfig {
+        cases: asked
+            .ok()
+            .and_then(|cases| cases.parse().ok())
+            .unwrap_or(10_000),
+        ..ProptestConfig::default()
+    }
+}
+
 proptest! {
+    #![proptest_config(soak())]
+
     #[test]
-    fn every_robot_stops_with_a_complete_map(scene in scene()) {
-        assert_complete(&scene)?;
+    fn every_robot_stops_with_a_complete_map(scene in scene(false)) {
+        assert_truthful(&scene)?;
     }
 
     #[test]
-    fn the_same_scene_runs_the_same(scene in scene()) {
+    fn every_robot_in_trouble_stops_and_tells_the_truth(scene in scene(true)) {
+        assert_truthful(&scene)?;
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_same_scene_runs_the_same(scene in scene(true)) {
         let (a, b) = (run(&scene, 300), run(&scene, 300));
         prop_assert_eq!(a.ticks, b.ticks);
         for (a, b) in a.robots.iter().zip(&b.robots) {

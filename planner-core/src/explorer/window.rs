@@ -275,7 +275,7 @@ impl NearSearch {
     ) -> Option<Bonus> {
         self.window = Window::around(around.position);
         *work += SIDE as u32;
-        let frontier = self.window.load(|at| around.map.frontier(at));
+        let frontier = self.window.load(|at| around.goals(at));
         if frontier.iter().all(|&row| row == 0) {
             return None;
         }

@@ -57,6 +57,12 @@ fn assert_same(map: &Small, naive: &Naive) {
     assert_eq!(map.frontiers() as usize, frontiers);
     let unknown = naive.known.iter().filter(|&&known| !known).count();
     assert_eq!(map.unknown_cells() as usize, unknown);
+    let (east, south) = (EXTENT.width as i16 - 1, EXTENT.height as i16 - 1);
+    let edge = all_cells().filter(|cell| {
+        let is_free = naive.known[index(*cell)] && !naive.obstacle[index(*cell)];
+        is_free && (cell.x == 0 || cell.y == 0 || cell.x == east || cell.y == south)
+    });
+    assert_eq!(map.free_edge_cells() as usize, edge.count());
 }
 
 fn tile_index() -> impl Strategy<Value = TileIndex> {
@@ -158,6 +164,10 @@ proptest! {
         for (x, y, radius) in looks {
             let sighting = look(Cell::new(x, y), radius, blocked);
             map.observe(&sighting);
+            // A robot that stands in a wall is right, and the wall is wrong.
+            let own = index(sighting.centre());
+            naive.visited[own] |= naive.obstacle[own];
+            naive.obstacle[own] = false;
             for cell in sighting.free_cells() {
                 naive.known[index(cell)] = true;
             }

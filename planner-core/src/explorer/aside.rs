@@ -1,0 +1,364 @@
+//! Cells that are set aside: those that refused a step, and frontier cells from which no
+//! look showed what is beside them. One bit a cell, and one age for all of them.
+//!
+//! A *round* begins with nothing set aside. A cell that refuses a step is closed: no way
+//! leads over it. A frontier cell that shows nothing is no goal any more; ways lead over
+//! it as before. Each refusal puts the end of the round off, by 4 ticks in the first
+//! round, by twice as many in each further one; then all cells are tried again. The last
+//! round that [`Config::patience`](super::Config::patience) allows has no end by time:
+//! every way that is left is tried in it, however many cells refuse, before the robot
+//! gives up.
+//!
+//! Which of the two a cell is, the map tells: only a robot that stood on a cell can have
+//! looked from it, so a visited frontier cell is one that shows nothing. Where such a
+//! cell refuses a step too, all cells of the round count as closed.
+//!
+//! Where roles change bodies, a role tells the next body what made it turn round. What is
+//! only told is tried once more, in a second last round, before the robot gives up.
+
+use super::maybe::Maybe;
+use crate::cell::Cell;
+use crate::map::{Map, TileIndex};
+
+/// Ticks from the last refusal to the end of the first round.
+const FIRST_PAUSE: u32 = 4;
+/// Limit of the doublings.
+const LONGEST: u8 = 12;
+
+/// Who says that a cell cannot be entered; the surer, the greater.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Refusal {
+    /// The body that the role had before, some time ago.
+    Told = 1,
+    /// A robot stood there and stayed.
+    Robot = 2,
+    /// The robot itself was refused.
+    Cell = 3,
+}
+
+/// Ticks that the last round waits for before it takes for granted what it was told:
+/// longer than a role remembers.
+const TOLD_PAUSE: u32 = 2 * u8::MAX as u32 + 2;
+
+/// What to do when nothing else is left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// No cell is set aside.
+    Nothing,
+    /// Wait for the end of the round.
+    Wait,
+    /// Begin a new round.
+    Again,
+    /// Give up: this cell refused.
+    Blocked(Cell),
+    /// Give up: a robot stayed on this cell.
+    Held(Cell),
+    /// Give up: no look showed this cell.
+    Unseen(Cell),
+}
+
+/// The cells set aside since the round began. 8 bytes a tile, and 24.
+#[derive(Debug)]
+pub(crate) struct Aside<const TW: usize, const TH: usize> {
+    cells: [[u64; TW]; TH],
+    /// A cell that refused, and one that no look showed.
+    refused_at: Cell,
+    unseen_at: Cell,
+    /// The tick in which the round ends.
+    until: u32,
+    round: u8,
+    /// The surest of the refusals in this round.
+    refusal: Maybe<Refusal>,
+    /// The tick until which what was told is in doubt.
+    told_until: u32,
+    has_told: bool,
+    /// Whether what was told has been tried in a further last round.
+    is_verified: bool,
+    /// Frontier cells that show nothing.
+    unseen: u16,
+    /// Whether the robot learnt anything in this round.
+    has_learnt: bool,
+    /// Whether a cell that shows nothing refused too.
+    all_closed: bool,
+}
+
+impl<const TW: usize, const TH: usize> Aside<TW, TH> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            cells: [[0; TW]; TH],
+            refused_at: Cell::new(0, 0),
+            unseen_at: Cell::new(0, 0),
+            until: 0,
+            round: 0,
+            refusal: Maybe::Nothing,
+            told_until: 0,
+            has_told: false,
+            is_verified: false,
+            unseen: 0,
+            has_learnt: false,
+            all_closed: false,
+        }
+    }
+
+    /// Tries everything again, as if nothing had been tried before. Work: a word a tile.
+    pub(crate) fn reset(&mut self) {
+        self.begin_round();
+        self.round = 0;
+        self.is_verified = false;
+    }
+
+    const fn has_refused(&self) -> bool {
+        matches!(self.refusal, Maybe::Just(_))
+    }
+
+    fn begin_round(&mut self) {
+        if self.has_refused() || self.unseen > 0 {
+            self.cells = [[0; TW]; TH];
+        }
+        self.refusal = Maybe::Nothing;
+        self.has_told = false;
+        self.unseen = 0;
+        self.has_learnt = false;
+        self.all_closed = false;
+    }
+
+    /// Ends the round if it is time. Says whether cells are tried again. Work: nothing,
+    /// or a word a tile.
+    pub(crate) fn tick(&mut self, patience: u8, now: u32) -> bool {
+        let is_over = self.has_refused() && !self.is_last_round(patience) && now >= self.until;
+        if is_over {
+            self.next_round(patience);
+        }
+        is_over
+    }
+
+    /// Begins a new round. Work: a word a tile.
+    pub(crate) fn next_round(&mut self, patience: u8) {
+        if self.has_refused() {
+            self.is_verified |= self.is_last_round(patience);
+            self.round = self.round.saturating_add(1);
+        }
+        self.begin_round();
+    }
+
+    const fn is_last_round(&self, patience: u8) -> bool {
+        self.round.saturating_add(1) >= patience
+    }
+
+    /// A cell could not be entered.
+    pub(crate) fn refuse(&mut self, cell: Cell, why: Refusal, now: u32) {
+        if self.refusal.get().is_none_or(|surest| why >= surest) {
+            self.refusal = Maybe::Just(why);
+            self.refused_at = cell;
+        }
+        let pause = FIRST_PAUSE
+            << if self.round < LONGEST {
+                self.round
+            } else {
+                LONGEST
+            };
+        self.until = now.saturating_add(pause);
+        let is_new = self.add(cell);
+        if why == Refusal::Told {
+            self.has_told = true;
+            self.told_until = now.saturating_add(TOLD_PAUSE);
+        } else {
+            self.all_closed |= !is_new;
+        }
+    }
+
+    /// No look from this frontier cell showed `unseen` beside it.
+    pub(crate) fn show_nothing(&mut self, frontier: Cell, unseen: Cell) {
+        self.unseen_at = unseen;
+        if self.add(frontier) {
+            self.unseen = self.unseen.saturating_add(1);
+        }
+    }
+
+    /// Sets a cell aside; false if it was before.
+    fn add(&mut self, cell: Cell) -> bool {
+        let Some((word, bit)) = self.word_mut(cell) else {
+            return true;
+        };
+        let is_new = *word & bit == 0;
+        *word |= bit;
+        is_new
+    }
+
+    /// The robot learnt something: what refused is tried again soon.
+    pub(crate) fn renew(&mut self) {
+        self.round = self.round.min(1);
+        self.is_verified = false;
+        self.has_learnt = true;
+    }
+
+    fn word_mut(&mut self, cell: Cell) -> Option<(&mut u64, u64)> {
+        let (at, bit) = TileIndex::of(cell)?;
+        let row = self.cells.get_mut(usize::from(at.y))?;
+        Some((row.get_mut(usize::from(at.x))?, bit))
+    }
+
+    /// The cells of a tile that are no goals.
+    pub(crate) fn cells(&self, at: TileIndex) -> u64 {
+        if !self.has_refused() && self.unseen == 0 {
+            return 0;
+        }
+        let row = self.cells.get(usize::from(at.y));
+        let word = row.and_then(|row| row.get(usize::from(at.x)));
+        word.copied().unwrap_or(0)
+    }
+
+    /// The cells of a tile that no way leads over. Work: one word, or five tiles where
+    /// one of them is set aside.
+    #[inline] // mostly there are none
+    pub(crate) fn closed(&self, at: TileIndex, map: &Map<TW, TH>) -> u64 {
+        if !self.has_refused() {
+            return 0;
+        }
+        let cells = self.cells(at);
+        if cells == 0 || self.all_closed || self.unseen == 0 {
+            return cells;
+        }
+        cells & !(map.tile(at).visited & map.frontier(at))
+    }
+
+    /// What is to be done if of so many frontier cells none is left that is worth a look.
+    pub(crate) fn verdict(&self, patience: u8, frontiers: u32, now: u32) -> Verdict {
+        let all_unseen = self.unseen > 0 && u32::from(self.unseen) >= frontiers;
+        if all_unseen || !self.has_refused() && self.unseen > 0 {
+            return match self.has_learnt {
+                true => Verdict::Again,
+                false => Verdict::Unseen(self.unseen_at),
+            };
+        }
+        let Some(surest) = self.refusal.get() else {
+            return Verdict::Nothing;
+        };
+        if !self.is_last_round(patience) {
+            return match now < self.until {
+                true => Verdict::Wait,
+                false => Verdict::Again,
+            };
+        }
+        match surest {
+            _ if self.has_told && now < self.told_until => Verdict::Wait,
+            _ if self.has_told && !self.is_verified => Verdict::Again,
+            Refusal::Robot => Verdict::Held(self.refused_at),
+            Refusal::Cell | Refusal::Told => Verdict::Blocked(self.refused_at),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cell::Extent;
+
+    type Small = Aside<3, 3>;
+
+    const PATIENCE: u8 = 3;
+
+    #[test]
+    fn a_round_ends_a_while_after_the_last_refusal_and_the_last_one_never() {
+        let mut aside = Small::new();
+        let map = Map::<3, 3>::new(Extent::new(24, 24)).unwrap();
+        let doors: std::vec::Vec<Cell> = (0..24).map(|y| Cell::new(9, y)).collect();
+        let closed = |aside: &Small| -> u32 {
+            (0..9)
+                .map(|i| {
+                    aside
+                        .closed(TileIndex::new(i % 3, i / 3), &map)
+                        .count_ones()
+                })
+                .sum()
+        };
+        let mut now = 0;
+        for pause in [4, 8] {
+            for &door in &doors {
+                now += 3;
+                assert!(!aside.tick(PATIENCE, now));
+                aside.refuse(door, Refusal::Cell, now);
+            }
+            assert_eq!(closed(&aside), 24);
+            assert_eq!(aside.verdict(PATIENCE, 30, now), Verdict::Wait);
+            assert!(!aside.tick(PATIENCE, now + pause - 1));
+            now += pause;
+            assert!(aside.tick(PATIENCE, now));
+            assert_eq!(closed(&aside), 0);
+        }
+        for &door in &doors {
+            now += 100_000;
+            assert!(!aside.tick(PATIENCE, now));
+            aside.refuse(door, Refusal::Cell, now);
+        }
+        assert_eq!(closed(&aside), 24);
+        assert_eq!(
+            aside.verdict(PATIENCE, 30, now),
+            Verdict::Blocked(doors[23])
+        );
+        aside.renew();
+        assert!(aside.tick(PATIENCE, now + 100), "something was learnt");
+    }
+
+    #[test]
+    fn only_robots_in_the_way_are_told_apart() {
+        let mut aside = Small::new();
+        aside.refuse(Cell::new(3, 3), Refusal::Robot, 0);
+        assert_eq!(aside.verdict(1, 30, 0), Verdict::Held(Cell::new(3, 3)));
+        aside.refuse(Cell::new(4, 3), Refusal::Cell, 0);
+        assert_eq!(aside.verdict(1, 30, 0), Verdict::Blocked(Cell::new(4, 3)));
+    }
+
+    #[test]
+    fn what_was_told_is_tried_once_more_before_it_is_the_reason() {
+        let mut aside = Small::new();
+        let door = Cell::new(3, 3);
+        aside.refuse(door, Refusal::Told, 0);
+        assert_eq!(aside.verdict(1, 30, 511), Verdict::Wait);
+        assert_eq!(aside.verdict(1, 30, 512), Verdict::Again);
+        aside.next_round(1);
+        assert_eq!(aside.verdict(1, 30, 512), Verdict::Nothing);
+        aside.refuse(door, Refusal::Told, 600);
+        assert_eq!(aside.verdict(1, 30, 1112), Verdict::Blocked(door));
+        aside.refuse(Cell::new(4, 4), Refusal::Robot, 700);
+        assert_eq!(aside.verdict(1, 30, 1112), Verdict::Held(Cell::new(4, 4)));
+    }
+
+    #[test]
+    fn what_shows_nothing_is_no_goal_but_a_way() {
+        let mut map = Map::<3, 3>::new(Extent::new(24, 24)).unwrap();
+        let frontier = Cell::new(5, 5);
+        map.observe(&crate::sight::Sighting::new(frontier));
+        map.visit(frontier);
+        let (at, bit) = TileIndex::of(frontier).unwrap();
+        let mut aside = Small::new();
+        aside.show_nothing(frontier, Cell::new(6, 5));
+        assert_eq!((aside.cells(at), aside.closed(at, &map)), (bit, 0));
+        assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
+        let (_, other) = TileIndex::of(Cell::new(1, 1)).unwrap();
+        aside.refuse(Cell::new(1, 1), Refusal::Cell, 0);
+        assert_eq!(
+            (aside.cells(at), aside.closed(at, &map)),
+            (bit | other, other)
+        );
+        assert_eq!(aside.verdict(8, 1, 0), Verdict::Unseen(Cell::new(6, 5)));
+        aside.refuse(frontier, Refusal::Cell, 0);
+        assert_eq!(aside.closed(at, &map), bit | other);
+        aside.next_round(8);
+        assert_eq!(
+            (aside.cells(at), aside.verdict(8, 30, 9)),
+            (0, Verdict::Nothing)
+        );
+    }
+
+    #[test]
+    fn what_shows_nothing_is_tried_again_once_something_else_was_learnt() {
+        let mut aside = Small::new();
+        aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
+        aside.renew();
+        assert_eq!(aside.verdict(8, 30, 0), Verdict::Again);
+        aside.next_round(8);
+        aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
+        assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
+    }
+}

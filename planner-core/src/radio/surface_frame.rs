@@ -6,6 +6,7 @@ use super::envelope::{HEADER, Header, Sealed, TAG, Writer, optional_cell, packed
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
+use crate::list;
 use crate::point::Point;
 use crate::robot::RobotId;
 use crate::surface::{Bits, Height, Patch, Tile};
@@ -225,7 +226,7 @@ fn decode_record(bytes: &[u8], extent: Extent) -> Result<(HeightRecord, &[u8]), 
         south: x & 128 != 0,
         fresh: x & 64 != 0,
         cells,
-        heights: heights.iter().map(|&height| Height(height)).collect(),
+        heights: list::collect(heights.iter().map(|&height| Height(height))),
     };
     let inside = record.tile.inside(extent.width, extent.height);
     if y > 63 || cells == 0 || record.tile_cells() & !inside != 0 {

@@ -17,6 +17,11 @@ const ENOUGH: u32 = 64;
 
 /// Half of the side of the window that they lie in.
 const WINDOW: i16 = 16;
+const _: () = assert!(
+    2 * WINDOW as u32 <= u32::BITS,
+    "a row of the window is a u32"
+);
+const _: () = assert!(POSES <= u16::MAX as usize, "a pose's number is a u16");
 
 /// What a view is worth to which a rival is nearer.
 const RIVALS_SHARE: f32 = 0.25;

@@ -42,8 +42,8 @@ const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
 pub const PLANNER_MAX_BEAMS: usize = 64;
 
 /// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
-/// but [`PlannerResult::Ok`] nothing has changed: memory without a planner has none, and
-/// a planner that runs goes on.
+/// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
+/// planner that runs goes on.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_create(
     planner: *mut Planner,
@@ -79,14 +79,14 @@ pub extern "C" fn planner_create(
 
 /// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
 /// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
-/// [`PlannerResult::Ok`] and [`PlannerResult::OffGrid`] changes nothing.
+/// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
 ///
 /// What the proof of completeness needs of looks, of scans and of cells: standing on a
-/// free cell, looks (after a turn where `wait` says [`PlannerWait::Look`]) must in the
-/// end show each of the four neighbours as free or blocked. A neighbour that no look
-/// shows - glass, matt black, a sensor that does not point there - is set aside after a
-/// few looks, and if nothing else is left the robot stops with [`PlannerStop::Unseen`].
-/// The cell that the robot stands on is free, whatever was seen of it from elsewhere.
+/// free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
+/// show each of the four neighbours as free or blocked. A neighbour that no look shows
+/// (glass, matt black, a sensor that does not point there) is set aside after a few
+/// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
+/// cell that the robot stands on is free, whatever was seen of it from elsewhere.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_scan(
     planner: *mut Planner,
@@ -124,8 +124,8 @@ pub extern "C" fn planner_observe_scan(
 }
 
 /// Takes in cells that were seen from the cell `centre`, where the robot stands and
-/// which is free. Cells in between that nothing was seen of are left out. What looks
-/// must show stands with [`planner_observe_scan`].
+/// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
+/// says what looks must show.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_cells(
     planner: *mut Planner,
@@ -170,8 +170,8 @@ pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
     })
 }
 
-/// Whether a robot that stopped for this reason, a [`PlannerStop`], knows everything
-/// that it could reach within its map; otherwise it gave up.
+/// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
+/// it could reach within its map; otherwise it gave up.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
     const COMPLETE: [PlannerStop; 4] = [
@@ -202,7 +202,7 @@ pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerRe
 /// Writes the next frame for the other robots into `frame`, which holds
 /// [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
 /// nothing to send in this tick any more. A mute planner never has anything to send:
-/// see [`planner_is_mute`].
+/// see `planner_is_mute`.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_transmit(
     planner: *mut Planner,
@@ -232,8 +232,7 @@ pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> 
 }
 
 /// Takes in a frame of another robot, at any time. A result from
-/// [`PlannerResult::FrameLength`] on tells why it was not taken; nothing has changed
-/// then.
+/// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_receive(
     planner: *mut Planner,

@@ -238,20 +238,20 @@ extern "C" {
 #endif // __cplusplus
 
 // Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
-// but [`PlannerResult::Ok`] nothing has changed: memory without a planner has none, and
-// a planner that runs goes on.
+// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
+// planner that runs goes on.
 PlannerResult planner_create(Planner *planner, const PlannerConfig *config);
 
 // Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
 // At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
-// [`PlannerResult::Ok`] and [`PlannerResult::OffGrid`] changes nothing.
+// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
 //
 // What the proof of completeness needs of looks, of scans and of cells: standing on a
-// free cell, looks (after a turn where `wait` says [`PlannerWait::Look`]) must in the
-// end show each of the four neighbours as free or blocked. A neighbour that no look
-// shows - glass, matt black, a sensor that does not point there - is set aside after a
-// few looks, and if nothing else is left the robot stops with [`PlannerStop::Unseen`].
-// The cell that the robot stands on is free, whatever was seen of it from elsewhere.
+// free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
+// show each of the four neighbours as free or blocked. A neighbour that no look shows
+// (glass, matt black, a sensor that does not point there) is set aside after a few
+// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
+// cell that the robot stands on is free, whatever was seen of it from elsewhere.
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
@@ -259,8 +259,8 @@ PlannerResult planner_observe_scan(Planner *planner,
                                    size_t count);
 
 // Takes in cells that were seen from the cell `centre`, where the robot stands and
-// which is free. Cells in between that nothing was seen of are left out. What looks
-// must show stands with [`planner_observe_scan`].
+// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
+// says what looks must show.
 PlannerResult planner_observe_cells(Planner *planner,
                                     PlannerCell centre,
                                     const PlannerSeen *cells,
@@ -274,8 +274,8 @@ PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 // showed nothing is tried anew.
 PlannerResult planner_resume(Planner *planner);
 
-// Whether a robot that stopped for this reason, a [`PlannerStop`], knows everything
-// that it could reach within its map; otherwise it gave up.
+// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
+// it could reach within its map; otherwise it gave up.
 bool planner_stop_is_complete(uint8_t stop);
 
 // Says how the step of the last move went: [`PLANNER_MOVED`],
@@ -285,15 +285,14 @@ PlannerResult planner_report(Planner *planner, uint8_t motion);
 // Writes the next frame for the other robots into `frame`, which holds
 // [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
 // nothing to send in this tick any more. A mute planner never has anything to send:
-// see [`planner_is_mute`].
+// see `planner_is_mute`.
 PlannerResult planner_transmit(Planner *planner, uint8_t *frame, size_t *length);
 
 // Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
 PlannerResult planner_is_mute(Planner *planner, bool *is_mute);
 
 // Takes in a frame of another robot, at any time. A result from
-// [`PlannerResult::FrameLength`] on tells why it was not taken; nothing has changed
-// then.
+// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 PlannerResult planner_receive(Planner *planner, const uint8_t *frame, size_t length);
 
 // Writes how many cells of the map are known, and how many of them are frontiers.

@@ -25,6 +25,7 @@ pub enum PlannerResult {
     TooMany = 6,
     /// The motion is none of the constants.
     Motion = 7,
+    // 8 was any frame that was not taken.
     /// `cell_mm` is 0.
     CellSize = 9,
     /// The robot's place lies off the grid, so nothing was learnt. The planner decides

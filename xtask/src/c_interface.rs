@@ -221,3 +221,26 @@ fn other_enumerations_do_not_compile() -> Result<()> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::functions;
+
+    #[test]
+    fn functions_are_found_in_a_header() {
+        let header = "\
+// What `planner_ghost(` does.
+typedef struct {
+  uint64_t words[PLANNER_WORDS];
+} Planner;
+// See planner_tick().
+PlannerResult planner_observe(Planner *planner,
+                              size_t count);
+bool planner_is(uint8_t stop);
+void *planner_memory(void);
+static_assert(sizeof(Planner) == 8, \"\");
+";
+        let found = functions(header);
+        assert_eq!(found, ["planner_observe", "planner_is", "planner_memory"]);
+    }
+}

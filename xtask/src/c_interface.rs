@@ -125,7 +125,9 @@ fn linker() -> Result<PathBuf> {
 
 /// The names of the functions that a header declares.
 fn functions(header: &str) -> Vec<&str> {
-    let code = header.lines().filter(|line| !line.starts_with("//"));
+    let code = header
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
     code.filter_map(|line| {
         let (before, _) = line.split_once('(')?;
         let name = before.rsplit([' ', '*']).next()?;
@@ -233,7 +235,7 @@ mod tests {
 typedef struct {
   uint64_t words[PLANNER_WORDS];
 } Planner;
-// See planner_tick().
+  // See planner_tick().
 PlannerResult planner_observe(Planner *planner,
                               size_t count);
 bool planner_is(uint8_t stop);

@@ -325,8 +325,11 @@ fn miri() -> Result<String> {
         "radio::tests::maps_converge_under_loss",
     ];
 
-    /// Explores whole halls.
-    const SLOW: [&str; 1] = ["two_robots_explore_a_hall_and_hear_each_other"];
+    /// Compare all bytes of a planner, its padding too; and explore a whole hall.
+    const SKIPPED_IN_C: [&str; 2] = [
+        "a_failed_create",
+        "two_robots_explore_a_hall_and_hear_each_other",
+    ];
 
     install::miri()?;
     let miri = || {
@@ -351,7 +354,7 @@ fn miri() -> Result<String> {
     // The only unsafe code.
     miri()
         .args(["-p=c-api", "--"])
-        .args(SLOW.map(|test| format!("--skip={test}")))
+        .args(SKIPPED_IN_C.map(|test| format!("--skip={test}")))
         .run()?;
     Ok(format!("without {}", SKIPPED.join(", ")))
 }

@@ -6,20 +6,51 @@ mod file;
 
 use std::path::Path;
 
+use planner_core::coordinated_survey::CoordinatedSurvey;
 use planner_core::explorer::Explorer;
+use planner_core::fcao::Fcao;
+use planner_core::local_frontiers::LocalFrontiers;
+use planner_core::voxel_survey::VoxelSurvey;
 
 #[test]
 fn planners_fit_their_budget() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let budget = file::Budget::read(root).unwrap_or_else(|error| panic!("{error}"));
     let measured = [
-        ("explorer_64x64_bytes", size_of::<Explorer<8, 8>>() as u64),
+        ("explorer_64x64_bytes", size_of::<Explorer<8, 8>>()),
+        ("explorer_128x128_bytes", size_of::<Explorer<16, 16>>()),
         (
-            "explorer_128x128_bytes",
-            size_of::<Explorer<16, 16>>() as u64,
+            "local_frontiers_64x64_bytes",
+            size_of::<LocalFrontiers<8, 8>>(),
+        ),
+        ("fcao_104x104_bytes", size_of::<Fcao<13, 13>>()),
+        (
+            "coordinated_survey_104x104_bytes",
+            size_of::<CoordinatedSurvey<13, 13>>(),
+        ),
+        (
+            "voxel_survey_40x40x16_bytes",
+            size_of::<VoxelSurvey<5, 5, 16>>(),
+        ),
+        (
+            "voxel_survey_64x64x24_bytes",
+            size_of::<VoxelSurvey<8, 8, 24>>(),
         ),
     ];
-    if let Err(error) = budget.check("explorer_", &measured) {
-        panic!("{error}");
+    for planner in [
+        "explorer_",
+        "local_frontiers_",
+        "fcao_",
+        "coordinated_survey_",
+        "voxel_survey_",
+    ] {
+        let of_it = measured
+            .iter()
+            .filter(|(name, _)| name.starts_with(planner));
+        let of_it: Vec<_> = of_it.map(|&(name, size)| (name, size as u64)).collect();
+        match budget.check(planner, &of_it) {
+            Ok(within) => println!("{}", within.join("\n")),
+            Err(error) => panic!("{error}"),
+        }
     }
 }

@@ -1,4 +1,4 @@
-// A robot in C: explores a small built-in map and checks that bad pointers are
+// A robot in C: explores a small built-in map and checks that mistakes are
 // answered. Runs on an emulated STM32F405; `cargo xtask test --only c-example`.
 
 #include "board.h"
@@ -55,13 +55,34 @@ static void look(PlannerCell at) {
     check(planner_observe_cells(&robot, at, seen, count) == PLANNER_RESULT_OK, "observe");
 }
 
-static void bad_pointers_are_answered(const PlannerConfig *config) {
+static void mistakes_are_answered(const PlannerConfig *config) {
     PlannerAction action;
     Planner *crooked = (Planner *)((char *)&robot + 1);
     check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "not created");
     check(planner_create(NULL, config) == PLANNER_RESULT_NULL, "no planner");
     check(planner_create(&robot, NULL) == PLANNER_RESULT_NULL, "no configuration");
     check(planner_create(crooked, config) == PLANNER_RESULT_MISALIGNED, "misaligned");
+    PlannerConfig wrong = *config;
+    wrong.cell_mm = 0;
+    check(planner_create(&robot, &wrong) == PLANNER_RESULT_CELL_SIZE, "cells of 0 mm");
+    wrong = *config;
+    wrong.start.x = WIDTH;
+    check(planner_create(&robot, &wrong) == PLANNER_RESULT_EXTENT, "starts off the grid");
+    check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "still not created");
+}
+
+// Says why the robot stands still. This sensor sees all around; one that does not is
+// turned to `action->look`.
+static void explain(const PlannerAction *action) {
+    static const char *const REASONS[] = {
+        [PLANNER_WAIT_NONE] = "",
+        [PLANNER_WAIT_SIGHT] = "waits for a look\n",
+        [PLANNER_WAIT_POSE] = "waits for a place on the grid\n",
+        [PLANNER_WAIT_SEARCH] = "searches the map\n",
+        [PLANNER_WAIT_CLOSED] = "waits for a cell that refused a step\n",
+        [PLANNER_WAIT_LOOK] = "looks again\n",
+    };
+    board_print(REASONS[action->wait]);
 }
 
 int main(void) {
@@ -74,17 +95,21 @@ int main(void) {
         .cell_mm = 100,
         .bytes_per_tick = PLANNER_MAX_FRAME,
     };
-    bad_pointers_are_answered(&config);
+    mistakes_are_answered(&config);
     check(planner_create(&robot, &config) == PLANNER_RESULT_OK, "create");
+    bool is_mute;
+    check(planner_is_mute(&robot, &is_mute) == PLANNER_RESULT_OK && !is_mute, "talks");
 
     for (int tick = 0; tick < 2000; tick++) {
         look(at);
         PlannerAction action;
         check(planner_tick(&robot, &action) == PLANNER_RESULT_OK, "tick");
         if (action.kind == PLANNER_ACTION_KIND_STOP) {
-            check(action.stop == PLANNER_STOP_COMPLETE, "complete");
-            board_print("complete\n");
-            return 0;
+            board_print(planner_stop_is_complete(action.stop) ? "complete\n" : "gave up\n");
+            return action.stop == PLANNER_STOP_COMPLETE ? 0 : 1;
+        }
+        if (action.kind == PLANNER_ACTION_KIND_WAIT) {
+            explain(&action);
         }
         if (action.kind == PLANNER_ACTION_KIND_MOVE) {
             static const int8_t DX[] = {1, 0, -1, 0}, DY[] = {0, 1, 0, -1};
@@ -101,7 +126,7 @@ int main(void) {
         check(planner_transmit(&robot, frame, &length) == PLANNER_RESULT_OK, "transmit");
         // Its own frame says nothing to a robot; a real one would broadcast it.
         if (length > 0) {
-            check(planner_receive(&robot, frame, length) == PLANNER_RESULT_FRAME, "receive");
+            check(planner_receive(&robot, frame, length) == PLANNER_RESULT_FRAME_OWN, "receive");
         }
     }
     board_print("not complete\n");

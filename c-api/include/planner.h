@@ -9,6 +9,7 @@
 #ifndef PLANNER_H
 #define PLANNER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -31,7 +32,7 @@
 #define PLANNER_MAX_BEAMS 64
 
 // Size of a planner in words of 8 bytes: the 28 KiB that an explorer may take by
-// `fixtures/budget.txt`, and one word that tells that it is there.
+// `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
 #define PLANNER_WORDS 3585
 
 // What came of a call.
@@ -45,26 +46,45 @@ typedef enum {
   // There is no planner in this memory; call `planner_create` first.
   PLANNER_RESULT_NOT_CREATED = 3,
   // The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
-  // outside of it.
+  // off the grid.
   PLANNER_RESULT_EXTENT = 4,
-  // The scan's pose or its largest range is not a usable number.
+  // The scan's pose is not a number, or its largest range is not a positive one.
   PLANNER_RESULT_SCAN = 5,
   // More values than a call takes.
   PLANNER_RESULT_TOO_MANY = 6,
   // The motion is none of the constants.
   PLANNER_RESULT_MOTION = 7,
-  // The frame says nothing to this robot: damaged, its own, of another version
-  // or about another grid.
-  PLANNER_RESULT_FRAME = 8,
+  // `cell_mm` is 0.
+  PLANNER_RESULT_CELL_SIZE = 9,
+  // The robot's place lies off the grid, so nothing was learnt. The planner decides
+  // nothing and waits, for `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+  PLANNER_RESULT_OFF_GRID = 10,
+  // No frame has this length: cut short, or followed by something else.
+  PLANNER_RESULT_FRAME_LENGTH = 11,
+  // The frame is written in another version of the format.
+  PLANNER_RESULT_FRAME_VERSION = 12,
+  // The frame is of a kind that this planner does not read.
+  PLANNER_RESULT_FRAME_KIND = 13,
+  // The frame's check bytes do not match: damaged, or not signed with the key.
+  PLANNER_RESULT_FRAME_CHECK = 14,
+  // The sender's map is of another origin, cell size or extent.
+  PLANNER_RESULT_FRAME_OTHER_GRID = 15,
+  // The frame is the robot's own.
+  PLANNER_RESULT_FRAME_OWN = 16,
+  // A field of the frame holds what it cannot.
+  PLANNER_RESULT_FRAME_FIELD = 17,
+  // Another robot has this robot's id: give each robot its own.
+  PLANNER_RESULT_FRAME_SAME_ID = 18,
 } PlannerResult;
 
 // What the robot shall do.
 typedef enum {
   // Go to the neighbouring cell in `direction`, then call `planner_report`.
   PLANNER_ACTION_KIND_MOVE = 0,
-  // Stand still for this tick.
+  // Stand still for this tick, for the reason in `wait`.
   PLANNER_ACTION_KIND_WAIT = 1,
-  // Done, for the reason in `stop`. Final.
+  // Done, for the reason in `stop`. Every later tick says the same, until
+  // `planner_resume`.
   PLANNER_ACTION_KIND_STOP = 2,
 } PlannerActionKind;
 
@@ -80,17 +100,49 @@ typedef enum {
   PLANNER_DIRECTION_NORTH = 3,
 } PlannerDirection;
 
-// Why the robot stopped.
+// Why the robot stopped; `planner_stop_is_complete` tells whether it was done.
 typedef enum {
   // It has not.
   PLANNER_STOP_NONE = 0,
   // Every cell that can be reached is known.
   PLANNER_STOP_COMPLETE = 1,
-  // The same; `frontiers` cells heard of from others lie behind walls.
+  // The same; no way leads to `frontiers` more frontiers, and part of the map was
+  // heard from others.
   PLANNER_STOP_ENCLOSED = 2,
   // Gave up: the way stayed blocked at `at`, `frontiers` cells are left.
   PLANNER_STOP_BLOCKED = 3,
+  // Of another planner than this interface has: gave up back at the start.
+  PLANNER_STOP_BACK_AT_START = 4,
+  // Of another planner than this interface has: gave up without a trace to follow.
+  PLANNER_STOP_NO_TRACE = 5,
+  // Every cell that can be reached within the map is known; the map ends at
+  // `frontiers` free cells, and the world may go on.
+  PLANNER_STOP_AT_EDGE = 6,
+  // Every cell that can be reached is known; `frontiers` cells in sight lie where no
+  // way leads.
+  PLANNER_STOP_OUT_OF_REACH = 7,
+  // Gave up: no look shows what is at `at`, `frontiers` cells are left.
+  PLANNER_STOP_UNSEEN = 8,
+  // Gave up: a robot stayed in the way at `at`, `frontiers` cells are left.
+  PLANNER_STOP_HELD = 9,
 } PlannerStop;
+
+// Why the robot waits.
+typedef enum {
+  // It does not.
+  PLANNER_WAIT_NONE = 0,
+  // It has seen nothing yet: call `planner_observe_scan` or `planner_observe_cells`.
+  PLANNER_WAIT_SIGHT = 1,
+  // Its place lies off the grid: nothing is decided until one lies on it again.
+  PLANNER_WAIT_POSE = 2,
+  // It searches the map.
+  PLANNER_WAIT_SEARCH = 3,
+  // What is left lies behind cells that refused a step. They are tried again later.
+  PLANNER_WAIT_CLOSED = 4,
+  // It asks for a look in the direction `look`: turn the sensor there, then observe.
+  // A robot that sees all around need not turn.
+  PLANNER_WAIT_LOOK = 5,
+} PlannerWait;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.
 typedef struct {
@@ -106,24 +158,31 @@ typedef struct {
 } PlannerCell;
 
 // How a planner is set up. All robots of a fleet agree on everything but the
-// id and the start.
+// id, in which all differ, and the start.
 typedef struct {
-  // The robot's number; lower ones win ties.
+  // The robot's number, its own in the fleet; lower ones win ties.
   uint8_t id;
   // Width of the grid, in cells.
   uint16_t width;
   // Height of the grid, in cells.
   uint16_t height;
-  // Where the robot stands.
+  // Where the robot stands, on the grid.
   PlannerCell start;
-  // Side of a cell in millimetres.
+  // Side of a cell in millimetres, above 0.
   uint16_t cell_mm;
   // Where cell 0,0 lies in the common frame, in millimetres.
   int32_t origin_x_mm;
   // The same along y.
   int32_t origin_y_mm;
-  // Bytes that the robot may send a tick on average; 0: it only listens.
+  // Bytes that the robot may send a tick on average; 0: it only listens, which
+  // `planner_is_mute` tells. Less than `PLANNER_MAX_FRAME`: a frame every few ticks.
   uint16_t bytes_per_tick;
+  // 0: frames are not signed, and only those without a signature are taken.
+  // Anything else: they are signed with `key`, and only those signed with it are
+  // taken. Without a key whoever is in reach of the radio can write into the map.
+  uint8_t is_keyed;
+  // The fleet's secret.
+  uint8_t key[16];
 } PlannerConfig;
 
 // Where the robot is, in cells: the cell x,y covers x to x + 1 and y to y + 1.
@@ -140,8 +199,9 @@ typedef struct {
 typedef struct {
   // Direction relative to the heading, in radians; grows from east to south.
   float bearing;
-  // Distance to what was hit, in cells; infinite: nothing; negative: no
-  // measurement.
+  // Distance to what was hit, in cells. Infinite, or not below `max_range`: nothing
+  // within reach, so what lies on the beam is free. Negative or not a number: no
+  // measurement, which says nothing about any cell. Never give one for the other.
   float range;
 } PlannerBeam;
 
@@ -161,28 +221,46 @@ typedef struct {
   PlannerDirection direction;
   // Why, for a stop.
   PlannerStop stop;
-  // Frontier cells left, for a stop.
+  // Frontier cells left, for a stop; free cells at the map's edge, for
+  // `PLANNER_STOP_AT_EDGE`.
   uint32_t frontiers;
-  // The cell that could not be entered, for `PlannerStop::Blocked`.
+  // The cell that could not be entered, for `PLANNER_STOP_BLOCKED` and
+  // `PLANNER_STOP_HELD`, or be seen, for `PLANNER_STOP_UNSEEN`.
   PlannerCell at;
+  // Why, for a wait.
+  PlannerWait wait;
+  // Where to look, for `PLANNER_WAIT_LOOK`.
+  PlannerDirection look;
 } PlannerAction;
 
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
 
-// Creates a planner in place, or starts it anew. Takes 1 KiB of stack.
+// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
+// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
+// planner that runs goes on.
 PlannerResult planner_create(Planner *planner, const PlannerConfig *config);
 
 // Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
-// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells.
+// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
+// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
+//
+// What the proof of completeness needs of looks, of scans and of cells: standing on a
+// free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
+// show each of the four neighbours as free or blocked. A neighbour that no look shows
+// (glass, matt black, a sensor that does not point there) is set aside after a few
+// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
+// cell that the robot stands on is free, whatever was seen of it from elsewhere.
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
                                    const PlannerBeam *beams,
                                    size_t count);
 
-// Takes in cells that were seen from the cell `centre`, which is free.
+// Takes in cells that were seen from the cell `centre`, where the robot stands and
+// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
+// says what looks must show.
 PlannerResult planner_observe_cells(Planner *planner,
                                     PlannerCell centre,
                                     const PlannerSeen *cells,
@@ -191,17 +269,30 @@ PlannerResult planner_observe_cells(Planner *planner,
 // Decides what the robot does now. Call it once a tick.
 PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 
+// Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
+// or wants it to try again what it gave up. Without a stop, what refused a step or
+// showed nothing is tried anew.
+PlannerResult planner_resume(Planner *planner);
+
+// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
+// it could reach within its map; otherwise it gave up.
+bool planner_stop_is_complete(uint8_t stop);
+
 // Says how the step of the last move went: [`PLANNER_MOVED`],
 // [`PLANNER_BLOCKED`] or [`PLANNER_HELD`].
 PlannerResult planner_report(Planner *planner, uint8_t motion);
 
 // Writes the next frame for the other robots into `frame`, which holds
 // [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
-// nothing to send in this tick any more.
+// nothing to send in this tick any more. A mute planner never has anything to send:
+// see `planner_is_mute`.
 PlannerResult planner_transmit(Planner *planner, uint8_t *frame, size_t *length);
 
-// Takes in a frame of another robot. [`PlannerResult::Frame`]: it says nothing to
-// this robot, and nothing has changed.
+// Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
+PlannerResult planner_is_mute(Planner *planner, bool *is_mute);
+
+// Takes in a frame of another robot, at any time. A result from
+// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 PlannerResult planner_receive(Planner *planner, const uint8_t *frame, size_t length);
 
 // Writes how many cells of the map are known, and how many of them are frontiers.
@@ -217,11 +308,11 @@ PlannerResult planner_known(Planner *planner, uint32_t *known, uint32_t *frontie
 // arm-none-eabi-gcc; with others its structures do not look like these.
 #if defined(__arm__) && !defined(__linux__)
 #ifdef __cplusplus
-static_assert(sizeof(PlannerAction) == 12, "compile with -fshort-enums");
+static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
 #else
-_Static_assert(sizeof(PlannerAction) == 12, "compile with -fshort-enums");
+_Static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 _Static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 _Static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
 #endif

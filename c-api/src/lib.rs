@@ -1,6 +1,6 @@
 //! The explorer behind a C interface: `include/planner.h` for firmware in C.
 //!
-//! Five verbs, as everywhere: observe, tick, report, transmit, receive. A planner
+//! The verbs are those of everywhere: observe, tick, report, transmit, receive. A planner
 //! lives in memory of the caller; pointers that are null or not aligned, and
 //! memory without a planner, are answered with a [`PlannerResult`], not with a
 //! crash. What no library can check is left to the caller: that memory behind a
@@ -10,15 +10,15 @@
 mod place;
 mod types;
 
-use planner_core::explorer::Config;
-use planner_core::radio::MAX_LEN;
-use planner_core::sight::{Beam, RangeScan};
+use planner_core::explorer::{Config, Explorer};
+use planner_core::radio::{Key, LinkConfig, MAX_LEN};
+use planner_core::sight::{Beam, RangeScan, ScanError};
 use planner_core::{Cell, Extent, Motion, Planner as _, RobotId, Sighting};
 
 pub use place::{PLANNER_WORDS, Planner};
 pub use types::{
     PlannerAction, PlannerActionKind, PlannerBeam, PlannerCell, PlannerConfig, PlannerDirection,
-    PlannerPose, PlannerResult, PlannerSeen, PlannerStop,
+    PlannerPose, PlannerResult, PlannerSeen, PlannerStop, PlannerWait,
 };
 
 use place::{Robot, input, inputs, output, robot};
@@ -41,7 +41,9 @@ const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
 /// Beams of one scan at most.
 pub const PLANNER_MAX_BEAMS: usize = 64;
 
-/// Creates a planner in place, or starts it anew. Takes 1 KiB of stack.
+/// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
+/// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
+/// planner that runs goes on.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_create(
     planner: *mut Planner,
@@ -51,21 +53,40 @@ pub extern "C" fn planner_create(
         let config = *input(config)?;
         let extent = Extent::new(config.width, config.height);
         let start = Cell::new(config.start.x, config.start.y);
-        if !extent.contains(start) {
+        // All of it before the memory is touched.
+        let is_large = config.width.max(config.height) > PLANNER_MAX_CELLS;
+        if is_large || !extent.contains(start) {
             return Err(PlannerResult::Extent);
         }
+        if config.cell_mm == 0 {
+            return Err(PlannerResult::CellSize);
+        }
         let mut explorer = Config::new();
-        explorer.link.cell_mm = config.cell_mm;
-        explorer.link.origin_mm = (config.origin_x_mm, config.origin_y_mm);
-        explorer.link.bytes_per_tick = config.bytes_per_tick;
-        Robot::create(planner)?
+        explorer.link = LinkConfig {
+            origin_mm: (config.origin_x_mm, config.origin_y_mm),
+            cell_mm: config.cell_mm,
+            bytes_per_tick: config.bytes_per_tick,
+            key: (config.is_keyed != 0).then_some(Key(config.key)),
+        };
+        let robot = Robot::create(planner)?;
+        robot.is_mute = u32::from(config.bytes_per_tick == 0);
+        robot
+            .explorer
             .reset(explorer, RobotId(config.id), extent, start)
             .map_err(|_| PlannerResult::Extent)
     })
 }
 
 /// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
-/// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells.
+/// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
+/// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
+///
+/// What the proof of completeness needs of looks, of scans and of cells: standing on a
+/// free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
+/// show each of the four neighbours as free or blocked. A neighbour that no look shows
+/// (glass, matt black, a sensor that does not point there) is set aside after a few
+/// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
+/// cell that the robot stands on is free, whatever was seen of it from elsewhere.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_scan(
     planner: *mut Planner,
@@ -93,13 +114,18 @@ pub extern "C" fn planner_observe_scan(
             max_range,
             beams: &measured,
         };
-        let sighting = scan.sighting().map_err(|_| PlannerResult::Scan)?;
-        robot.observe(&sighting);
-        Ok(())
+        let sighting = scan.sighting().or_else(|error| match error {
+            // Farther than cells have names.
+            ScanError::Pose if pose.is_finite() => Ok(Sighting::new(Cell::new(-1, -1))),
+            ScanError::Pose | ScanError::MaxRange => Err(PlannerResult::Scan),
+        })?;
+        observe(&mut robot.explorer, &sighting)
     })
 }
 
-/// Takes in cells that were seen from the cell `centre`, which is free.
+/// Takes in cells that were seen from the cell `centre`, where the robot stands and
+/// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
+/// says what looks must show.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_cells(
     planner: *mut Planner,
@@ -117,8 +143,7 @@ pub extern "C" fn planner_observe_cells(
                 _ => sighting.see_blocked(cell),
             }
         }
-        robot.observe(&sighting);
-        Ok(())
+        observe(&mut robot.explorer, &sighting)
     })
 }
 
@@ -128,9 +153,34 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
     answer(|| {
         let robot = robot(planner)?;
         let action = output(action)?;
-        action.write(robot.tick().into());
+        let decided = robot.explorer.tick();
+        action.write(PlannerAction::new(decided, robot.explorer.waiting()));
         Ok(())
     })
+}
+
+/// Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
+/// or wants it to try again what it gave up. Without a stop, what refused a step or
+/// showed nothing is tried anew.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
+    answer(|| {
+        robot(planner)?.explorer.resume();
+        Ok(())
+    })
+}
+
+/// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
+/// it could reach within its map; otherwise it gave up.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
+    const COMPLETE: [PlannerStop; 4] = [
+        PlannerStop::Complete,
+        PlannerStop::Enclosed,
+        PlannerStop::AtEdge,
+        PlannerStop::OutOfReach,
+    ];
+    COMPLETE.iter().any(|&reason| reason as u8 == stop)
 }
 
 /// Says how the step of the last move went: [`PLANNER_MOVED`],
@@ -139,7 +189,7 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
 pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        robot.report(match motion {
+        robot.explorer.report(match motion {
             PLANNER_MOVED => Motion::Moved,
             PLANNER_BLOCKED => Motion::Blocked,
             PLANNER_HELD => Motion::Held,
@@ -151,7 +201,8 @@ pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerRe
 
 /// Writes the next frame for the other robots into `frame`, which holds
 /// [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
-/// nothing to send in this tick any more.
+/// nothing to send in this tick any more. A mute planner never has anything to send:
+/// see `planner_is_mute`.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_transmit(
     planner: *mut Planner,
@@ -163,15 +214,25 @@ pub extern "C" fn planner_transmit(
         let frame = output(frame.cast::<[u8; MAX_LEN]>())?;
         let length = output(length)?;
         let mut buffer = [0; MAX_LEN];
-        let written = robot.transmit(&mut buffer);
+        let written = robot.explorer.transmit(&mut buffer);
         frame.write(buffer);
         length.write(written.unwrap_or(0));
         Ok(())
     })
 }
 
-/// Takes in a frame of another robot. [`PlannerResult::Frame`]: it says nothing to
-/// this robot, and nothing has changed.
+/// Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> PlannerResult {
+    answer(|| {
+        let robot = robot(planner)?;
+        output(is_mute)?.write(robot.is_mute != 0);
+        Ok(())
+    })
+}
+
+/// Takes in a frame of another robot, at any time. A result from
+/// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_receive(
     planner: *mut Planner,
@@ -181,7 +242,7 @@ pub extern "C" fn planner_receive(
     answer(|| {
         let robot = robot(planner)?;
         let frame = inputs(frame, length)?;
-        robot.receive(frame).map_err(|_| PlannerResult::Frame)?;
+        robot.explorer.receive(frame)?;
         Ok(())
     })
 }
@@ -194,12 +255,25 @@ pub extern "C" fn planner_known(
     frontiers: *mut u32,
 ) -> PlannerResult {
     answer(|| {
-        let robot = robot(planner)?;
+        let map = robot(planner)?.explorer.map();
         let (known, frontiers) = (output(known)?, output(frontiers)?);
-        known.write(robot.map().known_cells());
-        frontiers.write(robot.map().frontiers());
+        known.write(map.known_cells());
+        frontiers.write(map.frontiers());
         Ok(())
     })
+}
+
+/// Hands a sighting to the planner, also one from off the grid: it waits then.
+fn observe(
+    explorer: &mut Explorer<{ place::TILES }, { place::TILES }>,
+    sighting: &Sighting,
+) -> Result<(), PlannerResult> {
+    explorer.observe(sighting);
+    if explorer.map().extent().contains(sighting.centre()) {
+        Ok(())
+    } else {
+        Err(PlannerResult::OffGrid)
+    }
 }
 
 fn answer(call: impl FnOnce() -> Result<(), PlannerResult>) -> PlannerResult {

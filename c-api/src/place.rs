@@ -8,7 +8,7 @@ use crate::types::PlannerResult;
 pub(crate) const TILES: usize = 16;
 
 /// Size of a planner in words of 8 bytes: the 28 KiB that an explorer may take by
-/// `fixtures/budget.txt`, and one word that tells that it is there.
+/// `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
 pub const PLANNER_WORDS: usize = 3585;
 
 /// Memory for one planner. `planner_create` makes one in it. Do not copy it.
@@ -22,7 +22,9 @@ pub struct Planner {
 pub(crate) struct Robot {
     /// [`CREATED`]; anything else: no planner was created here.
     created: u32,
-    explorer: Explorer<TILES, TILES>,
+    /// Whether the configuration lets it send nothing; anything but 0: it does.
+    pub(crate) is_mute: u32,
+    pub(crate) explorer: Explorer<TILES, TILES>,
 }
 
 const _: () = assert!(
@@ -36,27 +38,29 @@ const CREATED: u32 = 0x9e37_79b1;
 
 impl Robot {
     /// A planner without a map, in place.
-    pub(crate) fn create<'a>(
-        memory: *mut Planner,
-    ) -> Result<&'a mut Explorer<TILES, TILES>, PlannerResult> {
+    pub(crate) fn create<'a>(memory: *mut Planner) -> Result<&'a mut Self, PlannerResult> {
         check(memory)?;
         let place = memory.cast::<Self>();
         // SAFETY: inside of the memory, which `check` has looked at and which is
         // large enough by the assertions above.
-        let (created, explorer) =
-            unsafe { (&raw mut (*place).created, &raw mut (*place).explorer) };
+        let (created, is_mute, explorer) = unsafe {
+            (
+                &raw mut (*place).created,
+                &raw mut (*place).is_mute,
+                &raw mut (*place).explorer,
+            )
+        };
         // A constant that is all zero: the compiler clears the memory in place, and
         // needs neither a copy on the stack nor one in flash.
         output(explorer)?.write(const { Explorer::vacant() });
+        output(is_mute)?.write(0);
         output(created)?.write(CREATED);
         robot(memory)
     }
 }
 
 /// The planner in this memory.
-pub(crate) fn robot<'a>(
-    memory: *mut Planner,
-) -> Result<&'a mut Explorer<TILES, TILES>, PlannerResult> {
+pub(crate) fn robot<'a>(memory: *mut Planner) -> Result<&'a mut Robot, PlannerResult> {
     check(memory)?;
     // SAFETY: not null, aligned, and by the header's contract as large as a
     // Planner. Any bits are a valid u32.
@@ -66,8 +70,7 @@ pub(crate) fn robot<'a>(
     }
     // SAFETY: only `create` writes that word, before a whole Robot; it fits by the
     // assertions above. The header forbids other uses of the memory meanwhile.
-    let robot = unsafe { &mut *memory.cast::<Robot>() };
-    Ok(&mut robot.explorer)
+    Ok(unsafe { &mut *memory.cast::<Robot>() })
 }
 
 /// A value that the caller gives.

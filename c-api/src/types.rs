@@ -1,7 +1,8 @@
 //! The plain data of the interface.
 
+use planner_core::radio::FrameError;
 use planner_core::sight::Pose;
-use planner_core::{Action, Direction, Stop};
+use planner_core::{Action, Direction, Stop, Wait};
 
 /// What came of a call.
 #[repr(C)]
@@ -16,17 +17,50 @@ pub enum PlannerResult {
     /// There is no planner in this memory; call `planner_create` first.
     NotCreated = 3,
     /// The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
-    /// outside of it.
+    /// off the grid.
     Extent = 4,
-    /// The scan's pose or its largest range is not a usable number.
+    /// The scan's pose is not a number, or its largest range is not a positive one.
     Scan = 5,
     /// More values than a call takes.
     TooMany = 6,
     /// The motion is none of the constants.
     Motion = 7,
-    /// The frame says nothing to this robot: damaged, its own, of another version
-    /// or about another grid.
-    Frame = 8,
+    // 8 was any frame that was not taken.
+    /// `cell_mm` is 0.
+    CellSize = 9,
+    /// The robot's place lies off the grid, so nothing was learnt. The planner decides
+    /// nothing and waits, for `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+    OffGrid = 10,
+    /// No frame has this length: cut short, or followed by something else.
+    FrameLength = 11,
+    /// The frame is written in another version of the format.
+    FrameVersion = 12,
+    /// The frame is of a kind that this planner does not read.
+    FrameKind = 13,
+    /// The frame's check bytes do not match: damaged, or not signed with the key.
+    FrameCheck = 14,
+    /// The sender's map is of another origin, cell size or extent.
+    FrameOtherGrid = 15,
+    /// The frame is the robot's own.
+    FrameOwn = 16,
+    /// A field of the frame holds what it cannot.
+    FrameField = 17,
+    /// Another robot has this robot's id: give each robot its own.
+    FrameSameId = 18,
+}
+
+impl From<FrameError> for PlannerResult {
+    fn from(error: FrameError) -> Self {
+        match error {
+            FrameError::Length(_) => Self::FrameLength,
+            FrameError::Version(_) => Self::FrameVersion,
+            FrameError::Kind(_) => Self::FrameKind,
+            FrameError::Check => Self::FrameCheck,
+            FrameError::OtherGrid(_) => Self::FrameOtherGrid,
+            FrameError::Own => Self::FrameOwn,
+            FrameError::Field(_) => Self::FrameField,
+        }
+    }
 }
 
 /// One cell of the grid.
@@ -40,26 +74,33 @@ pub struct PlannerCell {
 }
 
 /// How a planner is set up. All robots of a fleet agree on everything but the
-/// id and the start.
+/// id, in which all differ, and the start.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PlannerConfig {
-    /// The robot's number; lower ones win ties.
+    /// The robot's number, its own in the fleet; lower ones win ties.
     pub id: u8,
     /// Width of the grid, in cells.
     pub width: u16,
     /// Height of the grid, in cells.
     pub height: u16,
-    /// Where the robot stands.
+    /// Where the robot stands, on the grid.
     pub start: PlannerCell,
-    /// Side of a cell in millimetres.
+    /// Side of a cell in millimetres, above 0.
     pub cell_mm: u16,
     /// Where cell 0,0 lies in the common frame, in millimetres.
     pub origin_x_mm: i32,
     /// The same along y.
     pub origin_y_mm: i32,
-    /// Bytes that the robot may send a tick on average; 0: it only listens.
+    /// Bytes that the robot may send a tick on average; 0: it only listens, which
+    /// `planner_is_mute` tells. Less than `PLANNER_MAX_FRAME`: a frame every few ticks.
     pub bytes_per_tick: u16,
+    /// 0: frames are not signed, and only those without a signature are taken.
+    /// Anything else: they are signed with `key`, and only those signed with it are
+    /// taken. Without a key whoever is in reach of the radio can write into the map.
+    pub is_keyed: u8,
+    /// The fleet's secret.
+    pub key: [u8; 16],
 }
 
 /// Where the robot is, in cells: the cell x,y covers x to x + 1 and y to y + 1.
@@ -80,8 +121,9 @@ pub struct PlannerPose {
 pub struct PlannerBeam {
     /// Direction relative to the heading, in radians; grows from east to south.
     pub bearing: f32,
-    /// Distance to what was hit, in cells; infinite: nothing; negative: no
-    /// measurement.
+    /// Distance to what was hit, in cells. Infinite, or not below `max_range`: nothing
+    /// within reach, so what lies on the beam is free. Negative or not a number: no
+    /// measurement, which says nothing about any cell. Never give one for the other.
     pub range: f32,
 }
 
@@ -101,9 +143,10 @@ pub struct PlannerSeen {
 pub enum PlannerActionKind {
     /// Go to the neighbouring cell in `direction`, then call `planner_report`.
     Move = 0,
-    /// Stand still for this tick.
+    /// Stand still for this tick, for the reason in `wait`.
     Wait = 1,
-    /// Done, for the reason in `stop`. Final.
+    /// Done, for the reason in `stop`. Every later tick says the same, until
+    /// `planner_resume`.
     Stop = 2,
 }
 
@@ -121,7 +164,7 @@ pub enum PlannerDirection {
     North = 3,
 }
 
-/// Why the robot stopped.
+/// Why the robot stopped; `planner_stop_is_complete` tells whether it was done.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlannerStop {
@@ -129,10 +172,15 @@ pub enum PlannerStop {
     None = 0,
     /// Every cell that can be reached is known.
     Complete = 1,
-    /// The same; `frontiers` cells heard of from others lie behind walls.
+    /// The same; no way leads to `frontiers` more frontiers, and part of the map was
+    /// heard from others.
     Enclosed = 2,
     /// Gave up: the way stayed blocked at `at`, `frontiers` cells are left.
     Blocked = 3,
+    /// Of another planner than this interface has: gave up back at the start.
+    BackAtStart = 4,
+    /// Of another planner than this interface has: gave up without a trace to follow.
+    NoTrace = 5,
     /// Every cell that can be reached within the map is known; the map ends at
     /// `frontiers` free cells, and the world may go on.
     AtEdge = 6,
@@ -145,6 +193,41 @@ pub enum PlannerStop {
     Held = 9,
 }
 
+impl<P> From<&Stop<P>> for PlannerStop {
+    fn from(stop: &Stop<P>) -> Self {
+        match stop {
+            Stop::Complete => Self::Complete,
+            Stop::Enclosed { .. } => Self::Enclosed,
+            Stop::Blocked { .. } => Self::Blocked,
+            Stop::BackAtStart { .. } => Self::BackAtStart,
+            Stop::NoTrace { .. } => Self::NoTrace,
+            Stop::AtEdge { .. } => Self::AtEdge,
+            Stop::OutOfReach { .. } => Self::OutOfReach,
+            Stop::Unseen { .. } => Self::Unseen,
+            Stop::Held { .. } => Self::Held,
+        }
+    }
+}
+
+/// Why the robot waits.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlannerWait {
+    /// It does not.
+    None = 0,
+    /// It has seen nothing yet: call `planner_observe_scan` or `planner_observe_cells`.
+    Sight = 1,
+    /// Its place lies off the grid: nothing is decided until one lies on it again.
+    Pose = 2,
+    /// It searches the map.
+    Search = 3,
+    /// What is left lies behind cells that refused a step. They are tried again later.
+    Closed = 4,
+    /// It asks for a look in the direction `look`: turn the sensor there, then observe.
+    /// A robot that sees all around need not turn.
+    Look = 5,
+}
+
 /// What a tick decided.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,15 +238,28 @@ pub struct PlannerAction {
     pub direction: PlannerDirection,
     /// Why, for a stop.
     pub stop: PlannerStop,
-    /// Frontier cells left, for a stop.
+    /// Frontier cells left, for a stop; free cells at the map's edge, for
+    /// `PLANNER_STOP_AT_EDGE`.
     pub frontiers: u32,
-    /// The cell that could not be entered, for `PlannerStop::Blocked`.
+    /// The cell that could not be entered, for `PLANNER_STOP_BLOCKED` and
+    /// `PLANNER_STOP_HELD`, or be seen, for `PLANNER_STOP_UNSEEN`.
     pub at: PlannerCell,
+    /// Why, for a wait.
+    pub wait: PlannerWait,
+    /// Where to look, for `PLANNER_WAIT_LOOK`.
+    pub look: PlannerDirection,
 }
 
 /// Enumerations take one byte in the ABI of bare Arm chips; the header checks the same.
 #[cfg(all(target_arch = "arm", target_os = "none"))]
-const _: () = assert!(size_of::<PlannerAction>() == 12 && size_of::<PlannerResult>() == 1);
+const _: () = assert!(size_of::<PlannerAction>() == 16 && size_of::<PlannerResult>() == 1);
+
+impl PlannerPose {
+    /// Whether it names a place, on the grid or off it.
+    pub(crate) const fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.heading.is_finite()
+    }
+}
 
 impl From<&PlannerPose> for Pose {
     fn from(pose: &PlannerPose) -> Self {
@@ -175,43 +271,54 @@ impl From<&PlannerPose> for Pose {
     }
 }
 
-impl From<Action> for PlannerAction {
-    fn from(action: Action) -> Self {
+impl From<Direction> for PlannerDirection {
+    fn from(direction: Direction) -> Self {
+        match direction {
+            Direction::East => Self::East,
+            Direction::South => Self::South,
+            Direction::West => Self::West,
+            Direction::North => Self::North,
+        }
+    }
+}
+
+impl PlannerAction {
+    /// Tells an action, and what the planner says of a wait.
+    pub(crate) fn new(action: Action, waiting: Option<Wait>) -> Self {
         let mut told = Self {
             kind: PlannerActionKind::Wait,
             direction: PlannerDirection::East,
             stop: PlannerStop::None,
             frontiers: 0,
             at: PlannerCell { x: 0, y: 0 },
+            wait: PlannerWait::None,
+            look: PlannerDirection::East,
         };
         match action {
-            Action::Wait => {}
             Action::Move(direction) => {
                 told.kind = PlannerActionKind::Move;
-                told.direction = match direction {
-                    Direction::East => PlannerDirection::East,
-                    Direction::South => PlannerDirection::South,
-                    Direction::West => PlannerDirection::West,
-                    Direction::North => PlannerDirection::North,
+                told.direction = direction.into();
+            }
+            Action::Wait => {
+                told.wait = match waiting {
+                    None => PlannerWait::None,
+                    Some(Wait::Sight) => PlannerWait::Sight,
+                    Some(Wait::Pose) => PlannerWait::Pose,
+                    Some(Wait::Search) => PlannerWait::Search,
+                    Some(Wait::Closed) => PlannerWait::Closed,
+                    Some(Wait::Look(direction)) => {
+                        told.look = direction.into();
+                        PlannerWait::Look
+                    }
                 };
             }
             Action::Stop(stop) => {
                 told.kind = PlannerActionKind::Stop;
+                told.stop = (&stop).into();
                 told.frontiers = stop.left();
                 if let Some(at) = stop.place() {
                     told.at = PlannerCell { x: at.x, y: at.y };
                 }
-                told.stop = match stop {
-                    Stop::Complete => PlannerStop::Complete,
-                    Stop::Enclosed { .. } => PlannerStop::Enclosed,
-                    Stop::Blocked { .. } => PlannerStop::Blocked,
-                    // Of another planner; told as what it is, a stop without completeness.
-                    Stop::BackAtStart { .. } | Stop::NoTrace { .. } => PlannerStop::None,
-                    Stop::AtEdge { .. } => PlannerStop::AtEdge,
-                    Stop::OutOfReach { .. } => PlannerStop::OutOfReach,
-                    Stop::Unseen { .. } => PlannerStop::Unseen,
-                    Stop::Held { .. } => PlannerStop::Held,
-                };
             }
         }
         told

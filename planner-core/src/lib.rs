@@ -10,6 +10,7 @@ mod cell;
 pub mod coordinated_survey;
 pub mod explorer;
 pub mod fcao;
+mod list;
 pub mod local_frontiers;
 pub mod map;
 mod math;

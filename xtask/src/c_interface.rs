@@ -1,12 +1,14 @@
-//! The C interface: its header, and its example in the emulator.
+//! The C interface: its header, what the library links, and its example in the emulator.
 
+use std::collections::HashSet;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use object::{Object, ObjectSymbol};
 
 use crate::shell::{self, cargo, command};
-use crate::{firmware, install};
+use crate::{firmware, host, install};
 
 const HEADER: &str = "c-api/include/planner.h";
 
@@ -40,12 +42,9 @@ fn header() -> Result<String> {
     Ok(String::from_utf8(text)?)
 }
 
-/// The example in C links with the static library, without a C library, and
-/// explores in the emulator.
-pub(crate) fn example_explores() -> Result<String> {
+/// The library for the chip.
+fn library() -> Result<PathBuf> {
     install::target(firmware::TARGET)?;
-    install::qemu()?;
-    install::c_compiler()?;
     cargo([
         "build",
         "--profile=firmware",
@@ -54,7 +53,125 @@ pub(crate) fn example_explores() -> Result<String> {
         firmware::TARGET,
     ])
     .run()?;
-    let library = firmware::path("libplanner.a", firmware::TARGET);
+    Ok(firmware::path("libplanner.a", firmware::TARGET))
+}
+
+/// No path from the library's functions leads to a panic: of an image with all of them
+/// the linker drops the panic handler.
+pub(crate) fn has_no_panic() -> Result<String> {
+    let library = library()?;
+    let header = header()?;
+    let functions = functions(&header);
+    let image = link(&library, &functions, &[])?;
+    let symbols = symbols(&image)?;
+    if let Some(missing) = functions.iter().find(|name| !symbols.contains(**name)) {
+        bail!("{} has no {missing}", library.display());
+    }
+    let panics = |symbols: &HashSet<String>| symbols.iter().any(|name| name.contains(HANDLER));
+    if !panics(&self::symbols(&firmware::image_that_panics()?)?) {
+        bail!("an image that panics has no {HANDLER}: has it another name now?");
+    }
+    if panics(&symbols) {
+        link(&library, &functions, &[format!("--why-live=*{HANDLER}*")])?;
+        bail!("the library for C can panic; the linker says above from where");
+    }
+    Ok(format!("{} functions of C", functions.len()))
+}
+
+/// Part of the name of the function that every panic ends in.
+const HANDLER: &str = "rust_begin_unwind";
+
+fn symbols(image: &Path) -> Result<HashSet<String>> {
+    let bytes = fs::read(image)?;
+    let elf = object::File::parse(&*bytes)?;
+    let names = elf.symbols().map(|symbol| Ok(symbol.name()?.to_owned()));
+    names.collect()
+}
+
+/// An image of the given functions and what they need.
+fn link(library: &Path, functions: &[&str], options: &[String]) -> Result<PathBuf> {
+    let image = library.with_file_name("c-functions");
+    let linked = command(linker()?)
+        .args(["-flavor", "gnu", "--gc-sections", "--entry=planner_create"])
+        .args(functions.iter().map(|name| format!("--undefined={name}")))
+        .args(options)
+        .arg(library)
+        .arg("-o")
+        .arg(&image);
+    println!("$ {linked}");
+    let output = linked.output()?;
+    firmware::print_chains(&format!("{}{}", output.stdout, output.stderr));
+    if !output.success() {
+        bail!("the library does not link:\n{}", output.stderr);
+    }
+    Ok(image)
+}
+
+/// The linker that comes with the compiler.
+fn linker() -> Result<PathBuf> {
+    let said = command("rustc")
+        .args(["--print=sysroot", "--print=host-tuple"])
+        .output()
+        .context("rustc")?
+        .stdout;
+    let [sysroot, host] = said.lines().collect::<Vec<_>>()[..] else {
+        bail!("rustc does not say where it lies:\n{said}");
+    };
+    let path = ["lib", "rustlib", host, "bin", "rust-lld"];
+    Ok(path
+        .iter()
+        .fold(PathBuf::from(sysroot), |path, part| path.join(part)))
+}
+
+/// The names of the functions that a header declares.
+fn functions(header: &str) -> Vec<&str> {
+    let code = header
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"));
+    code.filter_map(|line| {
+        let (before, _) = line.split_once('(')?;
+        let name = before.rsplit([' ', '*']).next()?;
+        name.starts_with("planner_").then_some(name)
+    })
+    .collect()
+}
+
+/// A program in C that does everything wrongly gets answers, on the host and under
+/// sanitizers; and the header compiles as C and as C++.
+pub(crate) fn misuse_is_answered() -> Result<String> {
+    install::host_compiler()?;
+    cargo(["build", "-p=c-api"]).run()?;
+    let folder = host::built().join("debug");
+    let program = folder.join("c-misuse");
+    let compiler = |language: &str| {
+        command(install::HOST_C_COMPILER)
+            .args(["-Wall", "-Wextra", "-Werror", "-I", "c-api/include"])
+            .arg(format!("-std={language}"))
+    };
+    compiler("c11")
+        .args([
+            "-g",
+            "-fsanitize=address,undefined",
+            "-fno-sanitize-recover=all",
+        ])
+        .arg("c-api/tests/misuse.c")
+        .arg(folder.join("libplanner.a"))
+        .args(["-lpthread", "-ldl", "-lm", "-o"])
+        .arg(&program)
+        .run()?;
+    command(&program).run()?;
+    compiler("c++11")
+        .args(["-fsyntax-only", "-x", "c++", HEADER])
+        .run()?;
+    Ok(String::new())
+}
+
+/// The example in C links with the static library, without a C library, and
+/// explores in the emulator.
+pub(crate) fn example_explores() -> Result<String> {
+    install::qemu()?;
+    install::c_compiler()?;
+    let library = library()?;
     let image = library.with_file_name("c-example");
     let source = |name: &str| PathBuf::from("c-api/example").join(name);
     command(install::C_COMPILER)
@@ -105,4 +222,27 @@ fn other_enumerations_do_not_compile() -> Result<()> {
         bail!("{HEADER} must refuse -fno-short-enums");
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::functions;
+
+    #[test]
+    fn functions_are_found_in_a_header() {
+        let header = "\
+// What `planner_ghost(` does.
+typedef struct {
+  uint64_t words[PLANNER_WORDS];
+} Planner;
+  // See planner_tick().
+PlannerResult planner_observe(Planner *planner,
+                              size_t count);
+bool planner_is(uint8_t stop);
+void *planner_memory(void);
+static_assert(sizeof(Planner) == 8, \"\");
+";
+        let found = functions(header);
+        assert_eq!(found, ["planner_observe", "planner_is", "planner_memory"]);
+    }
 }

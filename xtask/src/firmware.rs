@@ -282,8 +282,8 @@ pub(crate) fn too_large_is_refused() -> Result<String> {
     )
 }
 
-/// No path from planner-core leads to a panic: an image that would need the
-/// panic handler does not link.
+/// No path from any planner of planner-core leads to a panic: an image that would need
+/// the panic handler does not link.
 pub(crate) fn has_no_panic() -> Result<String> {
     must_not_link("no-panic-control", NO_PANIC)?;
     let output = show(cargo_build(TARGET).arg("--example=no-panic"))?;
@@ -295,6 +295,21 @@ pub(crate) fn has_no_panic() -> Result<String> {
         show_who_panics()?;
     }
     bail!("planner-core can panic, or its proof does not build; see the linker's messages above")
+}
+
+/// An image with a panic in it: the control again, whose handler has somewhere to go.
+pub(crate) fn image_that_panics() -> Result<PathBuf> {
+    cargo([
+        "rustc",
+        "--profile=firmware",
+        "-p=firmware",
+        "--target",
+        TARGET,
+    ])
+    .args(["--example=no-panic-control", "--"])
+    .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
+    .run()?;
+    Ok(path("examples/no-panic-control", TARGET))
 }
 
 /// Links the proof with a handler at address 0, asks the linker who needs it, and
@@ -313,7 +328,13 @@ fn show_who_panics() -> Result<()> {
         .arg("-Clink-arg=--defsym=a_panic_is_reachable=0")
         .arg("-Clink-arg=--why-live=*9panicking*"),
     )?;
-    for line in output.stderr.lines() {
+    print_chains(&output.stderr);
+    Ok(())
+}
+
+/// Prints what the linker says of symbols that it was asked about.
+pub(crate) fn print_chains(said: &str) {
+    for line in said.lines() {
         if let Some((before, symbol)) = line.rsplit_once(":(") {
             let arrow = if before.contains(">>>") {
                 "  called by"
@@ -323,7 +344,6 @@ fn show_who_panics() -> Result<()> {
             println!("{arrow} {}", symbol.trim_end_matches(')'));
         }
     }
-    Ok(())
 }
 
 /// The symbol that only a panic would need.
@@ -359,12 +379,7 @@ fn cargo_build(target: &str) -> Command {
 }
 
 pub(crate) fn path(image: &str, target: &str) -> PathBuf {
-    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
-    shell::root()
-        .join(folder)
-        .join(target)
-        .join("firmware")
-        .join(image)
+    host::built().join(target).join("firmware").join(image)
 }
 
 pub(crate) fn emulate(image: &str) -> Result<Output> {

@@ -16,6 +16,9 @@ pub(crate) const QEMU: &str = "qemu-system-arm";
 /// The compiler for C on the chip.
 pub(crate) const C_COMPILER: &str = "arm-none-eabi-gcc";
 
+/// The compiler for C on this machine, which compiles C++ too.
+pub(crate) const HOST_C_COMPILER: &str = "gcc";
+
 /// The standard library of a target, for the toolchain of this project.
 pub(crate) fn target(triple: &str) -> Result<()> {
     let rustup = || command("rustup").args(["target"]);
@@ -87,6 +90,11 @@ pub(crate) fn qemu() -> Result<()> {
 /// The compiler for C on the chip.
 pub(crate) fn c_compiler() -> Result<()> {
     package(C_COMPILER, "gcc-arm-none-eabi")
+}
+
+/// The compiler for C and C++ on this machine, with its sanitizers.
+pub(crate) fn host_compiler() -> Result<()> {
+    package("g++", "g++")
 }
 
 /// OctoMap's tools, which say what they are when called without arguments.

@@ -10,6 +10,9 @@ use crate::{budget, firmware, install, shell};
 const SIDES: [u32; 3] = [32, 64, 128];
 const OTHERS: [u32; 3] = [0, 9, 15];
 
+/// Beams of the scans that it tries.
+const BEAMS: [u32; 3] = [4, 16, 64];
+
 /// The worst calls keep to the budget, whatever the map's size and the number of robots.
 pub(crate) fn keeps_to_the_budget() -> Result<String> {
     install::qemu()?;
@@ -103,6 +106,12 @@ impl Figures {
         let ticks = ticks.into_iter().collect::<Result<Vec<_>>>()?;
         let by_robots = Self::growth(&ticks);
         measured.push(("worst_explorer_growth_by_robots_permille".into(), by_robots));
+        for beams in BEAMS {
+            measured.push((
+                format!("worst_sighting_{beams}_beams_instructions"),
+                self.figure(&format!("sighting_{beams}_beams"))?,
+            ));
+        }
         measured.push((
             "worst_cao_step_instructions".into(),
             self.figure("cao_step")?,

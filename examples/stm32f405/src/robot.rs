@@ -8,7 +8,7 @@ use embedded_hal::i2c::I2c;
 use embedded_hal::pwm::SetDutyCycle;
 use planner_core::explorer::{Config, Explorer};
 use planner_core::sight::{Pose, RangeScan};
-use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId};
+use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId, Wait};
 use static_cell::ConstStaticCell;
 
 use crate::rangers::{CELL_MM, MAX_RANGE, Rangers};
@@ -62,9 +62,32 @@ where
                 // and stays where it is.
                 explorer.report(Motion::Moved);
             }
-            Action::Wait => wheels.wait(),
+            Action::Wait => match explorer.waiting() {
+                // No sensor has shown what is there: another one looks at it.
+                Some(Wait::Look(direction)) => {
+                    defmt::debug!("looks {}", direction);
+                    wheels.turn(heading, direction);
+                    heading = direction;
+                }
+                // Never with these wheels; a robot that is located from outside waits
+                // here until its pose lies on the grid again.
+                Some(Wait::Pose) => {
+                    defmt::warn!("the pose {} lies off the grid", position);
+                    wheels.wait();
+                }
+                reason => {
+                    defmt::debug!("waits: {}", reason);
+                    wheels.wait();
+                }
+            },
             Action::Stop(stop) => {
-                defmt::info!("{}; {=u32} cells known", stop, explorer.map().known_cells());
+                let known = explorer.map().known_cells();
+                if stop.is_complete() {
+                    defmt::info!("{}; {=u32} cells known", stop, known);
+                } else {
+                    defmt::warn!("gave up: {}; {=u32} cells known", stop, known);
+                }
+                // `explorer.resume()` goes on: after an order, or when a door opened.
                 crate::rest();
             }
         }

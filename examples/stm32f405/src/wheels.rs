@@ -34,13 +34,18 @@ where
 {
     /// Turns from `heading` to `direction` and goes one cell.
     pub(crate) fn go(&mut self, heading: Direction, direction: Direction) {
+        self.turn(heading, direction);
+        self.drive(false, false, STEP_MS);
+    }
+
+    /// Turns from `heading` to `direction` on the spot.
+    pub(crate) fn turn(&mut self, heading: Direction, direction: Direction) {
         match (direction as u8).wrapping_sub(heading as u8) & 3 {
             0 => {}
             1 => self.drive(false, true, TURN_MS),
             2 => self.drive(false, true, 2 * TURN_MS),
             _ => self.drive(true, false, TURN_MS),
         }
-        self.drive(false, false, STEP_MS);
     }
 
     pub(crate) fn wait(&mut self) {

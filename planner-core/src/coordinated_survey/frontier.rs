@@ -3,6 +3,7 @@
 
 use super::CoordinatedSurvey;
 use crate::cell::Cell;
+use crate::list;
 use crate::math;
 use crate::point::Point;
 use crate::surface::{Bits, Tile};
@@ -48,7 +49,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         });
         let kept = core::mem::take(&mut self.shortlist);
         let mut shortlist: [Option<(f32, Tile)>; SHORTLIST] = [None; SHORTLIST];
-        for tile in kept.into_iter().chain(nearest).chain(in_turn) {
+        for tile in kept.iter().chain(&nearest).copied().chain(in_turn) {
             work += 2;
             let is_listed = shortlist
                 .iter()
@@ -67,7 +68,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             }
         }
         self.turn = turn;
-        self.shortlist = shortlist.iter().flatten().map(|&(_, tile)| tile).collect();
+        self.shortlist = list::collect(shortlist.iter().flatten().map(|&(_, tile)| tile));
         let mut best: Option<(f32, Cell)> = None;
         for (_, tile) in shortlist.into_iter().flatten() {
             for bit in Bits(self.knowledge.surface().frontier_cells(tile)) {

@@ -5,6 +5,7 @@ use heapless::Vec;
 use super::vicinity::Vicinity;
 use super::{Choice, CoordinatedSurvey, HISTORY};
 use crate::cao::{Degree, Frame, Model, Sample};
+use crate::list;
 use crate::math;
 use crate::point::Point;
 
@@ -124,7 +125,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 nearest.pop();
             }
             // Beyond the last place there is no room.
-            let _ = nearest.insert(place, (distance, at));
+            list::insert(&mut nearest, place, (distance, at));
         }
         for &(_, at) in &nearest {
             vicinity.leave_to(at, here);

@@ -9,6 +9,7 @@ use crate::surface::{Surface, Tile};
 /// Rows, and columns of a row. Flights are judged as far as this reaches: at least
 /// 27 columns to each side, and one more whose rim is not exact.
 const SIDE: usize = 64;
+const _: () = assert!(SIDE == u64::BITS as usize, "a row of the vicinity is a u64");
 
 /// Unknown columns of one row, from west to east.
 #[derive(Clone, Copy, Debug, Default)]

@@ -4,6 +4,7 @@
 use heapless::Vec;
 
 use crate::cell::Cell;
+use crate::list;
 use crate::robot::{Activity, RobotId, Status};
 
 /// Other robots that are remembered; of more, the nearest.
@@ -59,7 +60,7 @@ impl Others {
         }
         // There is room now; by id, so that ties fall the same way for everybody.
         let place = self.list.iter().take_while(|other| other.id < id).count();
-        let _ = self.list.insert(place.min(self.list.len()), heard);
+        list::insert(&mut self.list, place, heard);
     }
 
     /// Forgets a robot that has stopped, or else the farthest, if it is farther

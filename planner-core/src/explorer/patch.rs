@@ -7,6 +7,10 @@ use crate::map::TileIndex;
 
 /// How far from the goal, each way: what the usual sensor sees at once.
 const REACH: usize = 5;
+const _: () = assert!(
+    REACH <= 12,
+    "the window around a cell reaches at least 12 cells"
+);
 
 /// Rounds of growth at most; what winds more is left to others.
 const ROUNDS: u32 = 2 * REACH as u32;

@@ -3,7 +3,11 @@
 use crate::cell::Direction;
 
 /// Steps that a path holds.
-pub(super) const CAPACITY: usize = 256;
+pub(crate) const CAPACITY: usize = 256;
+const _: () = assert!(
+    CAPACITY == u8::MAX as usize + 1,
+    "the ring of steps wraps around where its u8 does"
+);
 
 /// The next steps of a way, at most 256: the rest of a longer one is looked for
 /// when these are used up. 68 bytes.

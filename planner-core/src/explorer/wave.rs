@@ -5,11 +5,20 @@
 //! each cell carries the label of the robot that reached it, or a *route*, in
 //! which each cell carries the direction back to where the wave started.
 
+use super::others::MAX_OTHERS;
 use crate::cell::{Cell, Direction};
 use crate::map::{TileIndex, TileSet, carried, shifted};
 
 /// Waves that can run at once: the robot's own and one for each other.
 pub(crate) const LABELS: usize = 16;
+const _: () = assert!(
+    LABELS <= u16::BITS as usize && LABELS <= 1 << 4,
+    "a set of labels is a u16, and a cell's label has four bits"
+);
+const _: () = assert!(
+    MAX_OTHERS < LABELS,
+    "each robot that is remembered, and the robot itself, needs a label"
+);
 
 /// The layers of one tile.
 #[derive(Clone, Copy)]

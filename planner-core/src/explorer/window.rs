@@ -6,12 +6,17 @@ use super::others::MAX_OTHERS;
 use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
-use crate::map::{TileIndex, bits};
+use crate::map::{TILE, TileIndex, bits};
 use crate::robot::RobotId;
 
 /// Side of the window in cells and in tiles.
 pub(crate) const SIDE: usize = 32;
 const TILES: u8 = 4;
+const _: () = assert!(SIDE == u32::BITS as usize, "a row of the window is a u32");
+const _: () = assert!(
+    SIDE == TILES as usize * TILE,
+    "the window is made of whole tiles"
+);
 
 /// One layer of the window: bit `x` of row `y` is the cell `(x, y)` from its corner.
 pub(crate) type Rows = [u32; SIDE];

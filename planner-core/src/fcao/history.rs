@@ -1,21 +1,22 @@
 //! The last few measurements of the objective.
 
-use heapless::{HistoryBuf, Vec};
+use heapless::Vec;
 
 use crate::cao::Sample;
+use crate::list;
 use crate::point::Point;
 
-/// The last `H` positions and rewards, the current one included.
+/// The last `H` positions and rewards, the current one included; oldest first.
 #[derive(Clone, Debug)]
-pub(crate) struct History<const H: usize>(HistoryBuf<(Point, f32), H>);
+pub(crate) struct History<const H: usize>(Vec<(Point, f32), H>);
 
 impl<const H: usize> History<H> {
     pub(crate) const fn new() -> Self {
-        Self(HistoryBuf::new())
+        Self(Vec::new())
     }
 
     pub(crate) fn push(&mut self, at: Point, reward: f32) {
-        self.0.write((at, reward));
+        list::push_out(&mut self.0, (at, reward));
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -32,7 +33,7 @@ impl<const H: usize> History<H> {
 
     /// Oldest first, each with weight 1 and the mean of all rewards taken off.
     pub(crate) fn centred(&self) -> Vec<Sample, H> {
-        let sum: f32 = self.0.oldest_ordered().map(|(_, reward)| reward).sum();
+        let sum: f32 = self.0.iter().map(|(_, reward)| reward).sum();
         let mean = sum / self.len().max(1) as f32;
         self.samples(|reward| reward - mean, 1.0)
     }
@@ -40,7 +41,7 @@ impl<const H: usize> History<H> {
     /// Oldest first, with `value` of each reward.
     pub(crate) fn samples(&self, value: impl Fn(f32) -> f32, weight: f32) -> Vec<Sample, H> {
         let mut samples = Vec::new();
-        for &(at, reward) in self.0.oldest_ordered() {
+        for &(at, reward) in &self.0 {
             // As long as the buffer that it is read from.
             let _ = samples.push(Sample {
                 at,

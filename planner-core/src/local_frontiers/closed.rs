@@ -8,6 +8,12 @@ const CAPACITY: usize = 8;
 /// Ticks for which a cell is closed the first time, and at most.
 const FIRST: u8 = 4;
 const LONGEST: u8 = 64;
+/// Times that the first pause is doubled at most.
+const DOUBLINGS: u8 = 4;
+const _: () = assert!(
+    (FIRST as u32) << DOUBLINGS <= u8::MAX as u32,
+    "the longest pause is counted in a u8"
+);
 
 /// Blocked steps in a row after which the robot no longer waits on the spot.
 const PATIENT: u8 = 3;
@@ -37,7 +43,7 @@ impl Closed {
     /// Closes a cell. With no place left the cell that would open first gives
     /// way: it may be tried too early, which costs one more blocked step.
     pub(super) fn close(&mut self, cell: Cell) {
-        let doublings = self.failures.min(4);
+        let doublings = self.failures.min(DOUBLINGS);
         self.failures = self.failures.saturating_add(1);
         if let Some(place) = self.cells.iter_mut().min_by_key(|(_, ticks)| *ticks) {
             *place = (cell, (FIRST << doublings).min(LONGEST));

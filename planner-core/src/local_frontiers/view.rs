@@ -13,6 +13,10 @@ use super::config::{Distance, Neighbourhood};
 const RADIUS: i16 = MAX_RADIUS as i16;
 /// Rows and columns of a window.
 pub(super) const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
+const _: () = assert!(
+    SPAN <= u32::BITS as usize && SPAN + 2 <= u64::BITS as usize,
+    "a row of a window is a u32, and with a cell more at each end a u64"
+);
 /// The 31 bits of a row that are cells.
 const COLUMNS: u64 = (1 << SPAN) - 1;
 /// How far the search for visited cells goes beyond a frontier cell. The robot's

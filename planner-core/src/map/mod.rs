@@ -11,6 +11,7 @@ use core::fmt;
 
 pub use tile::{TILE, Tile, TileIndex, TileSet, bit_of, bits, carried, shifted};
 
+pub(crate) use tile::MOST_TILES;
 use tile::WEST_COLUMN;
 
 use crate::cell::{Cell, Direction, Extent};
@@ -82,8 +83,8 @@ impl core::ops::AddAssign for Learnt {
     }
 }
 
-/// An occupancy grid of at most `8·TW` × `8·TH` cells. `TW` is at most 64, `TH`
-/// at most 255.
+/// An occupancy grid of at most `8·TW` × `8·TH` cells. `TW` and `TH`
+/// are at most 64.
 ///
 /// Memory: 24 bytes a tile for the layers, 1 for its frontier count, and 8 bytes
 /// a row of tiles.
@@ -108,8 +109,14 @@ impl<const TW: usize, const TH: usize> Default for Map<TW, TH> {
 impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// The largest grid that fits.
     pub const CAPACITY: Extent = {
-        assert!(TW >= 1 && TW <= 64, "a map has 1 to 64 columns of tiles");
-        assert!(TH >= 1 && TH <= 64, "a map has 1 to 64 rows of tiles");
+        assert!(
+            TW >= 1 && TW <= MOST_TILES,
+            "a map has 1 to 64 columns of tiles"
+        );
+        assert!(
+            TH >= 1 && TH <= MOST_TILES,
+            "a map has 1 to 64 rows of tiles"
+        );
         Extent::new((TW * TILE) as u16, (TH * TILE) as u16)
     };
 

@@ -6,6 +6,13 @@ use crate::cell::{Cell, Direction};
 
 /// Side of a tile in cells.
 pub const TILE: usize = 8;
+const _: () = assert!(
+    TILE == 8,
+    "a layer of a tile is a u64 with a byte a row, and cells are divided by shifting"
+);
+
+/// Columns and rows of tiles that a map has at most: a set of them is a bit each.
+pub(crate) const MOST_TILES: usize = u64::BITS as usize;
 
 /// The western column of a tile.
 pub(super) const WEST_COLUMN: u64 = 0x0101_0101_0101_0101;
@@ -159,6 +166,7 @@ impl<const TH: usize> Default for TileSet<TH> {
 impl<const TH: usize> TileSet<TH> {
     /// No tile.
     pub const fn new() -> Self {
+        const { assert!(TH <= MOST_TILES, "a map has 1 to 64 rows of tiles") }
         Self {
             rows: [0; TH],
             occupied: 0,

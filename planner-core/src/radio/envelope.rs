@@ -5,6 +5,7 @@ use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
+use crate::map::{MOST_TILES, TILE};
 use crate::robot::RobotId;
 
 /// The format that this code writes, and the only one that it reads.
@@ -144,6 +145,11 @@ impl<'a> Writer<'a> {
         self.buffer.get(..self.length).unwrap_or(&[])
     }
 }
+
+const _: () = assert!(
+    MOST_TILES * TILE <= 1 << 12,
+    "a coordinate is written with 12 bits"
+);
 
 /// A cell in three bytes: 12 bits of `x`, then 12 bits of `y`, low bits first.
 pub(super) const fn packed(cell: Cell) -> [u8; 3] {

@@ -6,9 +6,11 @@ use super::envelope::{HEADER, Header, Sealed, TAG, Writer, optional_cell, packed
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
+use crate::list;
+use crate::map::MOST_TILES;
 use crate::point::Point;
 use crate::robot::RobotId;
-use crate::surface::{Bits, Height, Patch, Tile};
+use crate::surface::{Bits, Height, Patch, SIDE, Tile};
 use crate::survey::Status;
 
 /// The kind of frame that carries columns of a height map.
@@ -27,6 +29,18 @@ const MAX_RECORDS: usize = ROOM / (RECORD + 1);
 
 /// Coordinates on the wire in one cell.
 const PER_CELL: f32 = 128.0;
+const _: () = assert!(
+    MOST_TILES * SIDE * PER_CELL as usize <= 1 << u16::BITS,
+    "a coordinate is written as a u16"
+);
+const _: () = assert!(
+    MOST_TILES <= 1 << 6,
+    "a column of tiles is written with 6 bits"
+);
+const _: () = assert!(
+    MAX_COLUMNS <= u32::BITS as usize,
+    "a record has the columns of half a tile"
+);
 
 /// Some columns of the northern or southern half of a tile.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -225,7 +239,7 @@ fn decode_record(bytes: &[u8], extent: Extent) -> Result<(HeightRecord, &[u8]), 
         south: x & 128 != 0,
         fresh: x & 64 != 0,
         cells,
-        heights: heights.iter().map(|&height| Height(height)).collect(),
+        heights: list::collect(heights.iter().map(|&height| Height(height))),
     };
     let inside = record.tile.inside(extent.width, extent.height);
     if y > 63 || cells == 0 || record.tile_cells() & !inside != 0 {

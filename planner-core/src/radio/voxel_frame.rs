@@ -8,6 +8,7 @@ use super::envelope::{
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::Extent;
+use crate::map::MOST_TILES;
 use crate::robot::RobotId;
 use crate::surface::Tile;
 use crate::volume::{Voxel, VoxelPatch};
@@ -21,6 +22,10 @@ const STATUS: usize = 9;
 const RECORD: usize = 3;
 /// Bytes of a mask: a bit a voxel.
 const MASK: usize = 8;
+const _: () = assert!(
+    MOST_TILES <= 1 << 6,
+    "a column of tiles is written with 6 bits"
+);
 /// Bytes for records: the same with and without a key.
 const ROOM: usize = MAX_LEN - HEADER - STATUS - TAG;
 

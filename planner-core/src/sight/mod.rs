@@ -17,6 +17,10 @@ pub const MAX_RADIUS: u8 = 15;
 
 /// Rows (and columns) of a sighting.
 const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
+const _: () = assert!(
+    SPAN <= u32::BITS as usize,
+    "a row of a sighting is a u32: MAX_RADIUS is at most 15"
+);
 
 /// Cells seen from `centre`, within [`MAX_RADIUS`] in both axes.
 ///

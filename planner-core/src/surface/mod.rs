@@ -18,6 +18,7 @@ pub use tile::{Bits, SIDE, Tile};
 use core::fmt;
 
 use crate::cell::{Cell, Extent};
+use crate::map::MOST_TILES;
 pub(crate) use tile::neighbours_of;
 
 /// Height of the ground, in quarters of a cell: from 0 to 63.75 cells. Whole cells
@@ -107,7 +108,12 @@ pub struct Surface<const TW: usize, const TH: usize> {
 impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     /// A map of nothing; a `static` of it costs no flash.
     pub const fn vacant() -> Self {
-        const { assert!(TW <= 64 && TH <= 64, "a map has at most 64×64 tiles") }
+        const {
+            assert!(
+                TW <= MOST_TILES && TH <= MOST_TILES,
+                "a map has at most 64×64 tiles"
+            )
+        }
         Self {
             extent: Extent::new(0, 0),
             known: [[0; TW]; TH],

@@ -4,6 +4,7 @@ use heapless::Vec;
 
 use super::{Surface, Tile};
 use crate::cell::Cell;
+use crate::list;
 use crate::math;
 use crate::point::Point;
 
@@ -51,7 +52,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
                 }
             }
         }
-        (found.iter().map(|&(_, tile)| tile).collect(), work)
+        (list::collect(found.iter().map(|&(_, tile)| tile)), work)
     }
 
     /// The first tile with frontiers behind `tile`, row by row and round again.
@@ -87,7 +88,7 @@ fn offer<const N: usize>(found: &mut Vec<(f32, Tile), N>, from: Point, tile: Til
         found.pop();
     }
     let place = found.iter().take_while(|(d, _)| *d <= distance).count();
-    found.insert(place, (distance, tile)).is_ok()
+    list::insert(found, place, (distance, tile))
 }
 
 fn farthest<const N: usize>(found: &Vec<(f32, Tile), N>) -> f32 {

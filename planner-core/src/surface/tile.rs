@@ -4,6 +4,10 @@ use crate::cell::Cell;
 
 /// Cells along one side of a tile.
 pub const SIDE: usize = 8;
+const _: () = assert!(
+    SIDE == 8,
+    "a layer of a tile is a u64 with a byte a row, and cells are divided by shifting"
+);
 
 const WEST_EDGE: u64 = 0x0101_0101_0101_0101;
 const EAST_EDGE: u64 = WEST_EDGE << 7;

@@ -376,7 +376,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     pub fn closest_frontier(&self) -> (Option<Cell>, u32) {
         let (tiles, mut work) = self.surface.nearest_frontier_tiles::<8>(self.position);
         let mut best: Option<(f32, Cell)> = None;
-        for tile in tiles {
+        for &tile in &tiles {
             work += 1;
             if best.is_some_and(|(least, _)| distance_to_tile(self.position, tile) >= least) {
                 break;

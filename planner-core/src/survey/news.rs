@@ -1,9 +1,10 @@
 //! The columns that a robot saw first in its last few steps, and how many robots
 //! saw them first together with it.
 
+use super::MAX_PEERS;
 use crate::cell::Cell;
 use crate::point::Point;
-use crate::surface::{Bits, Tile};
+use crate::surface::{Bits, SIDE, Tile};
 
 /// Tiles along one side of the window around a robot.
 const WINDOW: usize = 4;
@@ -11,6 +12,10 @@ const WINDOW: usize = 4;
 /// Longest sensor range for which the window covers every column in range, however
 /// the robot stands on the tiles.
 pub const MAX_RANGE: f32 = 12.0;
+const _: () = assert!(
+    2 * MAX_RANGE as usize + SIDE <= WINDOW * SIDE,
+    "the window holds every column in range, wherever in its tile the robot is"
+);
 
 /// Steps for which own discoveries are repeated to the others, so that a lost message
 /// does little harm.
@@ -62,16 +67,23 @@ pub(super) struct News {
     steps: [Window; REPEATS],
     /// Those of them that were not yet sent in this step.
     unsent: [Window; REPEATS],
-    /// Bit k of the number of others, in the words of plane k: enough for 15.
-    others: [Window; 4],
+    /// Bit k of the number of others, in the words of plane k.
+    others: [Window; COUNT_BITS],
 }
+
+/// Bits of the number of others.
+const COUNT_BITS: usize = 4;
+const _: () = assert!(
+    MAX_PEERS < 1 << COUNT_BITS,
+    "the number of robots that saw a column too must fit"
+);
 
 impl News {
     pub(super) const fn new() -> Self {
         Self {
             steps: [Window::EMPTY; REPEATS],
             unsent: [Window::EMPTY; REPEATS],
-            others: [Window::EMPTY; 4],
+            others: [Window::EMPTY; COUNT_BITS],
         }
     }
 
@@ -91,7 +103,7 @@ impl News {
         if let Some(current) = self.steps.first_mut() {
             *current = fresh;
         }
-        self.others = [fresh; 4];
+        self.others = [fresh; COUNT_BITS];
         self.unsent = self.steps;
     }
 

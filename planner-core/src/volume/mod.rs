@@ -15,6 +15,7 @@ pub use sight::in_sight;
 use core::fmt;
 
 use crate::cell::{Cell, Extent};
+use crate::map::MOST_TILES;
 use crate::surface::{Tile, neighbours_of};
 
 /// One cube of a box. The unit is the cube's side.
@@ -120,7 +121,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
         const {
             assert!(
-                TW <= 64 && TH <= 64 && L <= 255,
+                TW <= MOST_TILES && TH <= MOST_TILES && L <= u8::MAX as usize,
                 "at most 64×64 tiles, 255 levels"
             )
         }

@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use super::{Action, VoxelSurvey};
+use crate::list;
 use crate::volume::Voxel;
 
 /// Poses around the robot that are considered.
@@ -16,6 +17,11 @@ const ENOUGH: u32 = 64;
 
 /// Half of the side of the window that they lie in.
 const WINDOW: i16 = 16;
+const _: () = assert!(
+    2 * WINDOW as u32 <= u32::BITS,
+    "a row of the window is a u32"
+);
+const _: () = assert!(POSES <= u16::MAX as usize, "a pose's number is a u16");
 
 /// What a view is worth to which a rival is nearer.
 const RIVALS_SHARE: f32 = 0.25;
@@ -62,10 +68,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             if place.steps == 0 {
                 break;
             }
-            if self.way.is_full() {
-                self.way.remove(0);
-            }
-            let _ = self.way.push(place.at);
+            list::push_out(&mut self.way, place.at);
             number = place.before;
         }
         Some(self.follow().unwrap_or(Action::Hover))
@@ -73,15 +76,15 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// The number of the best of `places`, looked at in strides.
     fn best_of(&mut self, places: &[Place], stride: usize) -> Option<u16> {
-        let chosen: Vec<(u16, Place), VIEWS> = (0u16..)
-            .zip(places)
-            .filter(|(_, place)| !self.done.get(place.at))
-            .step_by(stride)
-            .map(|(number, &place)| (number, place))
-            .take(VIEWS)
-            .collect();
+        let chosen: Vec<(u16, Place), VIEWS> = list::collect(
+            (0u16..)
+                .zip(places)
+                .filter(|(_, place)| !self.done.get(place.at))
+                .step_by(stride.max(1))
+                .map(|(number, &place)| (number, place)),
+        );
         let mut best: Option<(f32, u16)> = None;
-        for (number, place) in chosen {
+        for &(number, place) in &chosen {
             let gain = self.gain(place.at, ENOUGH);
             if gain == 0 {
                 continue;

@@ -10,6 +10,8 @@ mod cao;
 mod explorer;
 #[cfg(target_os = "none")]
 mod places;
+#[cfg(target_os = "none")]
+mod scan;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
@@ -21,7 +23,10 @@ fn main() -> std::process::ExitCode {
 fn main() -> ! {
     let timer = cortex_m::Peripherals::take().map(|chip| chip.SYST);
     let stopwatch = firmware::Stopwatch::start(timer.expect("nobody else takes the timer"));
-    match explorer::measure(&stopwatch).and_then(|()| cao::measure(&stopwatch)) {
+    let measured = explorer::measure(&stopwatch)
+        .and_then(|()| scan::measure(&stopwatch))
+        .and_then(|()| cao::measure(&stopwatch));
+    match measured {
         Ok(()) => firmware::end(firmware::Ending::Success),
         Err(core::fmt::Error) => panic!("the host does not take the report; enable semihosting"),
     }

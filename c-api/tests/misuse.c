@@ -1,0 +1,221 @@
+// Programs in C that use the interface wrongly get an answer, and nothing else happens:
+// compiled with sanitizers and run on the host by `cargo xtask test --only c-misuse`.
+// Every block that the library gets is as large as its type and no larger.
+
+#include "planner.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures;
+
+#define CHECK(what, wanted)                                                              \
+    do {                                                                                 \
+        int got = (int)(what);                                                           \
+        if (got != (int)(wanted)) {                                                      \
+            printf("line %d: %s is %d, not %d\n", __LINE__, #what, got, (int)(wanted));  \
+            failures++;                                                                  \
+        }                                                                                \
+    } while (0)
+
+static PlannerConfig usual(void) {
+    return (PlannerConfig){.id = 1, .width = 20, .height = 20, .start = {5, 5}, .cell_mm = 100, .bytes_per_tick = 55};
+}
+
+static void look(Planner *planner, PlannerCell at) {
+    PlannerSeen seen[4] = {
+        {{(int16_t)(at.x + 1), at.y}, 0},
+        {{at.x, (int16_t)(at.y + 1)}, 0},
+        {{(int16_t)(at.x - 1), at.y}, 1},
+        {{at.x, (int16_t)(at.y - 1)}, 1},
+    };
+    CHECK(planner_observe_cells(planner, at, seen, 4), PLANNER_RESULT_OK);
+}
+
+// Every call but create, on memory that holds no planner.
+static void nothing_is_created(Planner *planner) {
+    PlannerPose pose = {5.5f, 5.5f, 0};
+    PlannerAction action;
+    uint8_t frame[PLANNER_MAX_FRAME] = {0};
+    size_t length;
+    uint32_t known, frontiers;
+    bool is_mute;
+    PlannerResult wanted = PLANNER_RESULT_NOT_CREATED;
+    CHECK(planner_observe_scan(planner, &pose, 5, NULL, 0), wanted);
+    CHECK(planner_observe_cells(planner, (PlannerCell){5, 5}, NULL, 0), wanted);
+    CHECK(planner_tick(planner, &action), wanted);
+    CHECK(planner_report(planner, PLANNER_MOVED), wanted);
+    CHECK(planner_resume(planner), wanted);
+    CHECK(planner_transmit(planner, frame, &length), wanted);
+    CHECK(planner_receive(planner, frame, 16), wanted);
+    CHECK(planner_known(planner, &known, &frontiers), wanted);
+    CHECK(planner_is_mute(planner, &is_mute), wanted);
+}
+
+// Creates with what cannot be: the memory stays as it is, byte by byte.
+static void refused(Planner *planner, PlannerConfig config, PlannerResult wanted) {
+    Planner *before = malloc(sizeof *before);
+    memcpy(before, planner, sizeof *before);
+    PlannerConfig *given = malloc(sizeof *given);
+    *given = config;
+    CHECK(planner_create(planner, given), wanted);
+    CHECK(memcmp(before, planner, sizeof *before), 0);
+    free(given);
+    free(before);
+}
+
+static void all_refused(Planner *planner) {
+    PlannerConfig config = usual();
+    refused(planner, (PlannerConfig){0}, PLANNER_RESULT_EXTENT);
+    config.width = 129;
+    refused(planner, config, PLANNER_RESULT_EXTENT);
+    config = usual();
+    config.height = 0;
+    refused(planner, config, PLANNER_RESULT_EXTENT);
+    config = usual();
+    config.start.x = 20;
+    refused(planner, config, PLANNER_RESULT_EXTENT);
+    config.start.x = -1;
+    refused(planner, config, PLANNER_RESULT_EXTENT);
+    config = usual();
+    config.cell_mm = 0;
+    refused(planner, config, PLANNER_RESULT_CELL_SIZE);
+}
+
+static void a_failed_create_changes_nothing(Planner *planner) {
+    for (int pattern = 0; pattern < 256; pattern += 5) {
+        memset(planner, pattern, sizeof *planner);
+        nothing_is_created(planner);
+        all_refused(planner);
+        nothing_is_created(planner);
+    }
+    PlannerConfig config = usual();
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    look(planner, config.start);
+    all_refused(planner);
+    CHECK(planner_create(planner, NULL), PLANNER_RESULT_NULL);
+    PlannerAction action;
+    CHECK(planner_tick(planner, &action), PLANNER_RESULT_OK);
+    CHECK(action.kind, PLANNER_ACTION_KIND_MOVE);
+}
+
+static void odd_pointers_and_counts(Planner *planner) {
+    char *block = malloc(sizeof *planner + 16);
+    PlannerConfig config = usual();
+    for (int offset = 1; offset < 8; offset++) {
+        Planner *crooked = (Planner *)(void *)(block + offset);
+        CHECK(planner_create(crooked, &config), PLANNER_RESULT_MISALIGNED);
+        CHECK(planner_resume(crooked), PLANNER_RESULT_MISALIGNED);
+    }
+    free(block);
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    PlannerPose pose = {5.5f, 5.5f, 0};
+    PlannerBeam *beams = calloc(PLANNER_MAX_BEAMS, sizeof *beams);
+    PlannerSeen *seen = calloc(1, sizeof *seen);
+    CHECK(planner_observe_scan(planner, &pose, 5, beams, PLANNER_MAX_BEAMS), PLANNER_RESULT_OK);
+    CHECK(planner_observe_scan(planner, &pose, 5, beams, PLANNER_MAX_BEAMS + 1), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_observe_scan(planner, &pose, 5, beams, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_observe_scan(planner, &pose, 5, NULL, 3), PLANNER_RESULT_NULL);
+    CHECK(planner_observe_cells(planner, config.start, seen, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_observe_cells(planner, config.start, NULL, 1), PLANNER_RESULT_NULL);
+    CHECK(planner_receive(planner, (uint8_t *)seen, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_receive(planner, NULL, 0), PLANNER_RESULT_FRAME_LENGTH);
+    CHECK(planner_report(planner, 3), PLANNER_RESULT_MOTION);
+    free(seen);
+    free(beams);
+}
+
+static void odd_numbers(Planner *planner) {
+    static const float ODD[] = {NAN, INFINITY, -INFINITY, -1, 0, 1e38f, -1e38f, 1e-45f, 3e9f, 65536};
+    PlannerConfig config = usual();
+    for (size_t i = 0; i < sizeof ODD / sizeof *ODD; i++) {
+        for (int field = 0; field < 6; field++) {
+            PlannerPose pose = {5.5f, 5.5f, 0};
+            PlannerBeam beams[3] = {{0, 2}, {1, 2}, {2, 2}};
+            float range = 5;
+            float *fields[6] = {&pose.x, &pose.y, &pose.heading, &range, &beams[1].range, &beams[1].bearing};
+            *fields[field] = ODD[i];
+            CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+            PlannerResult result = planner_observe_scan(planner, &pose, range, beams, 3);
+            bool is_off_grid = field < 2 && isfinite(ODD[i]) && (ODD[i] < 0 || ODD[i] >= 20);
+            bool is_odd = field < 4 && !isfinite(ODD[i]);
+            bool is_no_range = field == 3 && !(ODD[i] > 0);
+            CHECK(result, is_off_grid              ? PLANNER_RESULT_OFF_GRID
+                          : is_odd || is_no_range ? PLANNER_RESULT_SCAN
+                                                  : PLANNER_RESULT_OK);
+            PlannerAction action;
+            CHECK(planner_tick(planner, &action), PLANNER_RESULT_OK);
+            if (result != PLANNER_RESULT_OK) {
+                CHECK(action.kind, PLANNER_ACTION_KIND_WAIT);
+            }
+        }
+    }
+    static const PlannerCell OFF[] = {{INT16_MAX, INT16_MAX}, {INT16_MIN, INT16_MIN}, {-1, 5}, {20, 5}};
+    for (size_t i = 0; i < sizeof OFF / sizeof *OFF; i++) {
+        CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+        PlannerSeen seen = {OFF[i], 0};
+        CHECK(planner_observe_cells(planner, OFF[i], &seen, 1), PLANNER_RESULT_OFF_GRID);
+        PlannerAction action;
+        CHECK(planner_tick(planner, &action), PLANNER_RESULT_OK);
+        CHECK(action.kind, PLANNER_ACTION_KIND_WAIT);
+    }
+}
+
+// Frames without sense are refused, and a key refuses those without it.
+static void odd_frames(Planner *planner) {
+    PlannerConfig config = usual();
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    uint32_t random = 1;
+    int taken = 0;
+    for (int i = 0; i < 100000; i++) {
+        random = random * 1103515245u + 12345u;
+        size_t length = random >> 16 & 63;
+        uint8_t *frame = malloc(length > 0 ? length : 1);
+        for (size_t j = 0; j < length; j++) {
+            random = random * 1103515245u + 12345u;
+            frame[j] = (uint8_t)(random >> 20);
+        }
+        taken += planner_receive(planner, frame, length) < PLANNER_RESULT_FRAME_LENGTH;
+        free(frame);
+    }
+    CHECK(taken, 0);
+    uint8_t *frame = malloc(PLANNER_MAX_FRAME);
+    size_t *length = malloc(sizeof *length);
+    look(planner, config.start);
+    CHECK(planner_transmit(planner, frame, length), PLANNER_RESULT_OK);
+    CHECK(planner_receive(planner, frame, *length), PLANNER_RESULT_FRAME_OWN);
+    config.id = 2;
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_receive(planner, frame, *length), PLANNER_RESULT_OK);
+    config.is_keyed = 1;
+    memset(config.key, 7, sizeof config.key);
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_receive(planner, frame, *length) >= PLANNER_RESULT_FRAME_LENGTH, true);
+    config.bytes_per_tick = 0;
+    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    bool *is_mute = malloc(sizeof *is_mute);
+    CHECK(planner_is_mute(planner, is_mute), PLANNER_RESULT_OK);
+    CHECK(*is_mute, true);
+    free(is_mute);
+    free(length);
+    free(frame);
+}
+
+int main(void) {
+    Planner *planner = malloc(sizeof *planner);
+    a_failed_create_changes_nothing(planner);
+    odd_pointers_and_counts(planner);
+    odd_numbers(planner);
+    odd_frames(planner);
+    // Reasons by number, also those that do not exist.
+    for (int stop = 0; stop < 256; stop++) {
+        bool is_complete = stop == PLANNER_STOP_COMPLETE || stop == PLANNER_STOP_ENCLOSED
+            || stop == PLANNER_STOP_AT_EDGE || stop == PLANNER_STOP_OUT_OF_REACH;
+        CHECK(planner_stop_is_complete((uint8_t)stop), is_complete);
+    }
+    free(planner);
+    printf("%d failures\n", failures);
+    return failures != 0;
+}

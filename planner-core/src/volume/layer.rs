@@ -32,6 +32,19 @@ impl<const TW: usize, const TH: usize, const L: usize> Layer<TW, TH, L> {
         }
     }
 
+    /// Clears the bit of `voxel`.
+    pub(crate) fn clear(&mut self, voxel: Voxel) {
+        if let (Some(tile), Ok(z)) = (Tile::of(voxel.cell()), u8::try_from(voxel.z))
+            && let Some(word) = self
+                .0
+                .get_mut(usize::from(z))
+                .and_then(|level| level.get_mut(usize::from(tile.y)))
+                .and_then(|row| row.get_mut(usize::from(tile.x)))
+        {
+            *word &= !(1 << Tile::bit(voxel.cell()));
+        }
+    }
+
     pub(crate) fn get(&self, voxel: Voxel) -> bool {
         let Some(tile) = Tile::of(voxel.cell()) else {
             return false;

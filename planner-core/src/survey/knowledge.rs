@@ -104,6 +104,18 @@ pub(crate) enum Pause {
     Closed = 4,
 }
 
+impl Pause {
+    pub(crate) const fn reason(self) -> Option<Wait> {
+        match self {
+            Self::None => None,
+            Self::Sight => Some(Wait::Sight),
+            Self::Pose => Some(Wait::Pose),
+            Self::Search => Some(Wait::Search),
+            Self::Closed => Some(Wait::Closed),
+        }
+    }
+}
+
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     /// A robot without a map; a `static` of it costs no flash.
     pub const fn vacant() -> Self {
@@ -337,9 +349,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     fn is_pose(&self, at: Point) -> bool {
         let cell = at.cell();
         let ground = self.surface.height(cell).map_or(0.0, Height::cells);
-        at.is_finite()
-            && self.surface.extent().contains(cell)
-            && at.z >= ground - Height(1).cells()
+        at.is_finite() && self.surface.extent().contains(cell) && at.z >= ground - Height(1).cells()
     }
 
     pub(super) fn observe(&mut self, at: Point, columns: &[Column]) {
@@ -477,13 +487,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
 
     /// Why the robot hovers, where it is known.
     pub(super) const fn waiting(&self) -> Option<Wait> {
-        match self.pause {
-            Pause::None => None,
-            Pause::Sight => Some(Wait::Sight),
-            Pause::Pose => Some(Wait::Pose),
-            Pause::Search => Some(Wait::Search),
-            Pause::Closed => Some(Wait::Closed),
-        }
+        self.pause.reason()
     }
 
     pub(super) fn resume(&mut self) {

@@ -22,6 +22,7 @@ pub use news::MAX_RANGE;
 pub use peers::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use rescue::PATIENCE;
 
+pub(crate) use knowledge::Pause;
 pub(crate) use peers::Peers;
 pub(crate) use rescue::Rescue;
 pub(crate) use sender::Sender;

@@ -70,7 +70,7 @@ const ROUNDS: u8 = 3;
 const REST: u8 = 16;
 
 /// Steps in a round that the robot waits for robots in its way.
-const WAITS: u8 = 64;
+const WAITS: u8 = 32;
 
 /// Steps that it has when one has left.
 const TIME: u16 = 8;
@@ -92,6 +92,9 @@ pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     round: u8,
     rest: u8,
     waits: u8,
+    /// The robot that was in the way to the edge last, and whether one was.
+    hindrance: Point,
+    is_hindered: bool,
     /// The column that the leg leads to, and how many more legs there may be.
     leg: Cell,
     legs: u32,
@@ -124,6 +127,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             round: 0,
             rest: 0,
             waits: 0,
+            hindrance: Point::new(0.0, 0.0, 0.0),
+            is_hindered: false,
             leg: Cell::new(0, 0),
             legs: 0,
             known_columns: 0,
@@ -177,7 +182,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// One step of the rescue.
     ///
     /// Cost: 64 tiles while a target is searched for, 1024 while the way to it is; every
-    /// tile where a way turns out to be barred, or a round begins; and at most 30
+    /// tile where a way turns out to be barred, or a round begins; and at most 32
     /// flights looked at.
     pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
         let refused = knowledge.take_refused();
@@ -278,6 +283,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         }
         self.patience = self.patience.saturating_sub(1);
         let cruise = knowledge.limits().min_altitude + MARGIN;
+        if let Some(robot) = robot_in_the_way(knowledge, next, place, cruise) {
+            self.hindrance = robot;
+            self.is_hindered = true;
+        }
         let step = if self.careful {
             self.careful_step(knowledge, next, cruise)
         } else {
@@ -286,8 +295,9 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if step.is_some() && self.patience > 0 {
             return step;
         }
-        if let Some(robot) = robot_in_the_way(knowledge, next, place, cruise) {
-            if self.waits_for(robot) {
+        // Not there: a robot that is in the way may be why.
+        if self.is_hindered {
+            if self.waits_for(self.hindrance) {
                 self.patience = self.patience.max(TIME);
             } else {
                 self.give_up(target);
@@ -471,6 +481,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     fn begin(&mut self, knowledge: &Knowledge<TW, TH>, edge: u8) {
         self.edge = edge;
         self.climbing = false;
+        self.is_hindered = false;
         self.leg = knowledge.position().cell();
         self.legs = knowledge.surface().known_columns();
         self.patience = self.target.map_or(0, |cell| {
@@ -496,8 +507,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 }
 
-/// The robot that keeps this one from flying to `next`, or up, or that stands where it
-/// is going.
+/// The robot that keeps this one from flying straight to `next`, or up, or that stands
+/// where it is going.
 fn robot_in_the_way<const TW: usize, const TH: usize>(
     knowledge: &Knowledge<TW, TH>,
     next: Point,

@@ -152,7 +152,11 @@ fn fly(robot: &mut Robot, world: &World, script: &Script, loud: u32, most: u32) 
             }
         }
     }
-    panic!("no stop: {:?} {:?}", world, robot.knowledge().surface().frontiers());
+    panic!(
+        "no stop: {:?} {:?}",
+        world,
+        robot.knowledge().surface().frontiers()
+    );
 }
 
 fn is_true(stop: Stop, world: &World, robot: &Robot, has_peers: bool) {
@@ -393,11 +397,12 @@ fn a_robot_in_the_only_gap_is_named() {
             target: None,
             stopped: true,
         };
-        // It fills the gap at all heights.
-        let script: Script = Vec::from([(0..8u8)
-            .map(|level| {
-                let position = other.position.offset(0.0, 0.0, 1.5 * f32::from(level) - 1.0);
-                (1 + level, Status { position, ..other })
+        // With its like it fills the gap at all heights.
+        let script: Script = Vec::from([(0..14u8)
+            .map(|number| {
+                let (across, up) = (f32::from(number % 2) - 0.5, 1.7 * f32::from(number / 2));
+                let position = other.position.offset(0.0, across, up - 1.0);
+                (1 + number, Status { position, ..other })
             })
             .collect()]);
         let (stop, step) = fly(&mut robot, &world, &script, u32::MAX, 30_000);

@@ -10,6 +10,11 @@ pub(crate) struct Layer<const TW: usize, const TH: usize, const L: usize>([[[u64
 impl<const TW: usize, const TH: usize, const L: usize> Layer<TW, TH, L> {
     pub(crate) const EMPTY: Self = Self([[[0; TW]; TH]; L]);
 
+    /// Clears all bits, in place.
+    pub(crate) fn reset(&mut self) {
+        self.0 = [[[0; TW]; TH]; L];
+    }
+
     /// The bits of a tile of a level; none outside.
     pub(crate) fn word(&self, tile: Tile, z: u8) -> u64 {
         self.0

@@ -121,29 +121,57 @@ pub struct Volume<const TW: usize, const TH: usize, const L: usize> {
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
-    /// A box of `extent` columns and `levels` levels with nothing known.
-    ///
-    /// # Errors
-    /// The box is larger than the map.
-    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+    /// A box of nothing; a `static` of it costs no flash.
+    pub const fn vacant() -> Self {
         const {
             assert!(
                 TW <= 64 && TH <= 64 && L <= 255,
                 "at most 64×64 tiles, 255 levels"
             )
         }
-        if extent.width as usize > 8 * TW || extent.height as usize > 8 * TH || levels as usize > L
-        {
-            return Err(DoesNotFit);
-        }
-        Ok(Self {
-            extent,
-            levels,
+        Self {
+            extent: Extent::new(0, 0),
+            levels: 0,
             known: Layer::EMPTY,
             occupied: Layer::EMPTY,
             known_voxels: 0,
             frontiers: 0,
-        })
+        }
+    }
+
+    /// A box of `extent` columns and `levels` levels with nothing known.
+    ///
+    /// # Errors
+    /// The box is larger than the map.
+    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+        let mut volume = Self::vacant();
+        match volume.fit(extent, levels) {
+            Ok(()) => Ok(volume),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Forgets all, in place, and is a box of this size from now on.
+    ///
+    /// # Errors
+    /// The box is larger than the map; it has not changed then.
+    pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
+        self.fit(extent, levels)?;
+        self.known.reset();
+        self.occupied.reset();
+        self.known_voxels = 0;
+        self.frontiers = 0;
+        Ok(())
+    }
+
+    const fn fit(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
+        if extent.width as usize > 8 * TW || extent.height as usize > 8 * TH || levels as usize > L
+        {
+            return Err(DoesNotFit);
+        }
+        self.extent = extent;
+        self.levels = levels;
+        Ok(())
     }
 
     /// Size on the ground plan.

@@ -48,12 +48,13 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
-    pub(super) const fn new() -> Self {
+    /// All zero, until [`reset`](Self::reset).
+    pub(super) const fn vacant() -> Self {
         Self {
             stage: Stage::Idle,
             low: Layer::EMPTY,
             high: Layer::EMPTY,
-            layer: 1,
+            layer: 0,
             cursor: (Tile { x: 0, y: 0 }, 0),
             grows: false,
             passed: 0,
@@ -65,8 +66,20 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.stage == Stage::Idle
     }
 
+    /// Starts anew, in place.
+    pub(super) fn reset(&mut self) {
+        self.stage = Stage::Idle;
+        self.low.reset();
+        self.high.reset();
+        self.layer = 1;
+        self.cursor = (Tile { x: 0, y: 0 }, 0);
+        self.grows = false;
+        self.passed = 0;
+        self.spare = None;
+    }
+
     fn begin(&mut self, from: Voxel, known: u32) {
-        *self = Self::new();
+        self.reset();
         self.stage = Stage::Wave { known };
         self.low.set(from);
     }

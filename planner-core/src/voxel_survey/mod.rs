@@ -68,7 +68,7 @@ use crate::cell::Extent;
 use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, VoxelFrame};
 use crate::robot::{RobotId, Stop, Wait};
 use crate::surface::Tile;
-use crate::survey::{Peer, Peers, Sender};
+use crate::survey::{Pause, Peer, Peers, Sender};
 use crate::volume::{Content, DoesNotFit, Layer, Volume, Voxel, VoxelPatch};
 use far::Far;
 use news::News;
@@ -170,33 +170,27 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     last_known: u32,
     /// Whether anything was learnt from others.
     heard: bool,
-    /// Why it stopped, and the number of known voxels then.
-    stopped: Option<(Stop<Voxel>, u32)>,
-    waiting: Option<Wait>,
+    stopped: bool,
+    /// Why, and the number of known voxels then.
+    reason: (Stop<Voxel>, u32),
+    pause: Pause,
     work: u32,
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
-    /// A robot that knows nothing of a box of `extent` columns and `levels` levels; `id`
-    /// is its name on the radio.
-    ///
-    /// # Errors
-    /// The box is larger than the map.
-    pub fn new(extent: Extent, levels: u8, config: Config, id: u8) -> Result<Self, DoesNotFit> {
-        let LinkConfig {
-            origin_mm, cell_mm, ..
-        } = config.link;
-        let grid = GridId::of_box(extent, levels, origin_mm, cell_mm);
-        Ok(Self {
-            range: config.range.clamp(2, MAX_RANGE),
-            volume: Volume::new(extent, levels)?,
+    /// A robot without a map; a `static` of it costs no flash. Call
+    /// [`reset`](Self::reset) before use.
+    pub const fn vacant() -> Self {
+        Self {
+            range: 0,
+            volume: Volume::vacant(),
             done: Layer::EMPTY,
             position: Voxel::new(0, 0, 0),
             way: Vec::new(),
             goal: Voxel::new(0, 0, 0),
-            far: Far::new(),
+            far: Far::vacant(),
             peers: Peers::new(),
-            sender: Sender::new(config.link, grid, RobotId(id)),
+            sender: Sender::vacant(),
             news: News::new(),
             turn: (Tile { x: 0, y: 0 }, 0),
             passed: 0,
@@ -215,10 +209,59 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             fruitless: 0,
             last_known: 0,
             heard: false,
-            stopped: None,
-            waiting: None,
+            stopped: false,
+            reason: (Stop::Complete, 0),
+            pause: Pause::None,
             work: 0,
-        })
+        }
+    }
+
+    /// A robot that knows nothing of a box of `extent` columns and `levels` levels; `id`
+    /// is its name on the radio.
+    ///
+    /// # Errors
+    /// The box is larger than the map.
+    pub fn new(extent: Extent, levels: u8, config: Config, id: u8) -> Result<Self, DoesNotFit> {
+        let mut robot = Self::vacant();
+        robot.reset(extent, levels, config, id)?;
+        Ok(robot)
+    }
+
+    /// Starts anew, in place.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); nothing has changed then.
+    pub fn reset(
+        &mut self,
+        extent: Extent,
+        levels: u8,
+        config: Config,
+        id: u8,
+    ) -> Result<(), DoesNotFit> {
+        self.volume.reset(extent, levels)?;
+        let LinkConfig {
+            origin_mm, cell_mm, ..
+        } = config.link;
+        let grid = GridId::of_box(extent, levels, origin_mm, cell_mm);
+        self.range = config.range.clamp(2, MAX_RANGE);
+        self.position = Voxel::new(0, 0, 0);
+        self.goal = Voxel::new(0, 0, 0);
+        self.peers = Peers::new();
+        self.sender = Sender::new(config.link, grid, RobotId(id));
+        self.news.reset();
+        self.turn = (Tile { x: 0, y: 0 }, 0);
+        self.passed = 0;
+        self.refused = Voxel::new(0, 0, 0);
+        self.round_known = 0;
+        self.sent_to = None;
+        self.lost = false;
+        self.looked = false;
+        self.last_known = 0;
+        self.heard = false;
+        self.pause = Pause::None;
+        self.work = 0;
+        self.resume();
+        Ok(())
     }
 
     /// The map.
@@ -239,7 +282,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Why the last [`tick`](Self::tick) was [`Action::Hover`]. `None`: it was not, or the
     /// robot chooses where to fly next.
     pub const fn waiting(&self) -> Option<Wait> {
-        self.waiting
+        self.pause.reason()
     }
 
     /// Begins a step: where the robot is, and every voxel in sight within the range,
@@ -273,7 +316,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             return;
         }
         if self.silent >= SILENCE {
-            self.stopped = None;
+            self.stopped = false;
         }
         self.silent = 0;
         for &(voxel, occupied) in seen {
@@ -292,22 +335,22 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Goes on after a stop with the map at hand: what was given up is tried again.
     /// Without a stop it does only the latter.
     pub fn resume(&mut self) {
-        self.stopped = None;
+        self.stopped = false;
         self.silent = 0;
-        self.done = Layer::EMPTY;
-        self.missed = Layer::EMPTY;
+        self.done.reset();
+        self.missed.reset();
         self.has_missed = false;
         self.open_all();
         self.round = 0;
         self.rest = 0;
         self.fruitless = 0;
         self.way.clear();
-        self.far = Far::new();
+        self.far.reset();
     }
 
     /// Nothing counts as closed any more.
     fn open_all(&mut self) {
-        self.closed = Layer::EMPTY;
+        self.closed.reset();
         self.is_closed = false;
     }
 
@@ -324,7 +367,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         Status {
             position: self.position,
             goal: (!self.way.is_empty()).then_some(self.goal),
-            stopped: self.stopped.is_some(),
+            stopped: self.stopped,
         }
     }
 
@@ -411,7 +454,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// each voxel within range.
     pub fn tick(&mut self) -> Action {
         self.work = 0;
-        self.waiting = None;
+        self.pause = Pause::None;
         self.peers.age();
         self.sender.tick();
         let action = self.decide();
@@ -428,23 +471,22 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.silent = self.silent.saturating_add(1);
         }
         if self.lost {
-            return self.hover(Wait::Pose);
+            return self.hover(Pause::Pose);
         }
-        if let Some((reason, known_then)) = self.stopped
-            && known_then == known
-        {
+        let (reason, known_then) = self.reason;
+        if self.stopped && known_then == known {
             return Action::Stop(reason);
         }
-        self.stopped = None;
+        self.stopped = false;
         if self.silent >= SILENCE {
             return self.stop(self.unseen(self.unknown_place()));
         }
         if self.silent > 0 {
-            return self.hover(Wait::Sight);
+            return self.hover(Pause::Sight);
         }
         if self.rest > 0 {
             self.rest = self.rest.saturating_sub(1);
-            return self.hover(Wait::Closed);
+            return self.hover(Pause::Closed);
         }
         self.fruitless = if known == self.last_known {
             self.fruitless.saturating_add(1)
@@ -466,19 +508,20 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         match self.look_far() {
             far::Found::Way => self.follow().unwrap_or(Action::Hover),
-            far::Found::Searching => self.hover(Wait::Search),
+            far::Found::Searching => self.hover(Pause::Search),
             far::Found::Nothing => self.end_round(),
         }
     }
 
-    fn hover(&mut self, wait: Wait) -> Action {
-        self.waiting = Some(wait);
+    fn hover(&mut self, pause: Pause) -> Action {
+        self.pause = pause;
         Action::Hover
     }
 
     fn stop(&mut self, reason: Stop<Voxel>) -> Action {
         self.way.clear();
-        self.stopped = Some((reason, self.volume.known_voxels()));
+        self.stopped = true;
+        self.reason = (reason, self.volume.known_voxels());
         Action::Stop(reason)
     }
 
@@ -498,7 +541,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.rest = REST << self.round;
             self.round = self.round.saturating_add(1);
             self.open_all();
-            return self.hover(Wait::Closed);
+            return self.hover(Pause::Closed);
         }
         let missed = if self.has_missed {
             self.missed_place()

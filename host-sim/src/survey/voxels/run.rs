@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use planner_core::{Point, Stop};
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
+use planner_core::{Point, Stop};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 

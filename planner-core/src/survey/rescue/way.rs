@@ -73,9 +73,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
     pub(super) fn wet(&self) -> impl Iterator<Item = u64> + '_ {
         let [a, b, c] = &self.layers;
         let words = a.iter().flatten().zip(b.iter().flatten());
-        words
-            .zip(c.iter().flatten())
-            .map(|((a, b), c)| a | b | c)
+        words.zip(c.iter().flatten()).map(|((a, b), c)| a | b | c)
     }
 
     /// The column to fly to from the robot's; the wave does not enter `closed` columns.

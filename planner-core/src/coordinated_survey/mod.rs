@@ -204,7 +204,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
         let needs_rescue = self.knowledge.idle() >= PATIENCE;
-        if self.knowledge.is_blocked() && !needs_rescue {
+        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
             self.knowledge.take_refused();
             return self.sidestep();
         }

@@ -238,11 +238,13 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     fn decide(&mut self) -> Action {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        if self.knowledge.idle() >= PATIENCE {
-            return self.rescue.tick(&mut self.knowledge);
-        }
-        if self.knowledge.take_refused().is_some() {
+        let needs_rescue = self.knowledge.idle() >= PATIENCE;
+        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
+            self.knowledge.take_refused();
             return self.wander();
+        }
+        if needs_rescue {
+            return self.rescue.tick(&mut self.knowledge);
         }
         if self.knowledge.gain() > self.least_gain() {
             // Without a target: the robot optimises locally.

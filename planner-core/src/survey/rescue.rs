@@ -8,8 +8,9 @@
 //! shows.
 //!
 //! # What refuses
-//! A flight that is refused, by glass or by a robot that nobody heard of, makes the
-//! rescue *careful*: it crosses one border between columns at a time, so that it learns
+//! A flight that is refused, by glass or by a robot that nobody heard of, is first taken
+//! for a passing robot's sake, and the planner steps aside. From the third refusal on the
+//! rescue is *careful*: it crosses one border between columns at a time, so that it learns
 //! which column refuses. That column is *closed*, at all heights, and ways lead round
 //! it. A column that a robot heard of keeps from being entered is closed too, after a
 //! while. When no way to a frontier is left because of closed columns, all that cannot
@@ -20,12 +21,12 @@
 //! # Why a survey ends
 //! Let N be the columns of the map, F ≤ N frontiers, and a *spell* the steps in which
 //! no column becomes known and nobody says [`resume`](super::Surveyor::resume). There
-//! are at most N of these between two calls of it. Claim: in a spell with good poses
+//! are at most N + 1 of these between two calls of it. Claim: in a spell with good poses
 //! the robot stops. Nothing that other robots say of themselves has part in it: it only
 //! forbids flights, and each of the cases counts those.
 //! 1. *Planners.* A step without a new column has no gain, and a step with gain ends
 //!    the spell. So after [`PATIENCE`] steps every further one is the rescue's, but for
-//!    those of case 2.
+//!    those of case 2 and [`BUMPS`] steps aside.
 //! 2. *A sensor that shows nothing where it must*: the robot hovers, and stops after a
 //!    hundred such looks in a row. Any other look that shows something known brings it
 //!    back to case 3; looks that may show nothing are steps of case 3.
@@ -37,8 +38,8 @@
 //!    it as well. `patience` is set when an edge, a climb, or a leg begins. A *leg* is
 //!    the flight to the next column of the way; an edge has at most N of them by count,
 //!    whatever moves the robot. A refusal closes a column, at most N in a round, or
-//!    ends the flight to the edge or the climb. Waiting for robots in the way lowers
-//!    `waits`, which is set once a round. There are at most [`ROUNDS`] rests.
+//!    ends the flight to the edge or the climb. Waiting for robots in the way, in all
+//!    rounds but the first, lowers `waits`, which is set once a round. There are at most [`ROUNDS`] rests.
 //! 4. *No target is left*, and nothing was given up for what was in the way, or all
 //!    rounds are over: it stops, and as long as the spell lasts every tick is that stop.
 //!
@@ -69,6 +70,9 @@ const ROUNDS: u8 = 3;
 /// Steps of rest before the first of these; each time twice as many.
 const REST: u8 = 16;
 
+/// Refused flights after which the planner steps aside, before the rescue is careful.
+const BUMPS: u8 = 2;
+
 /// Steps in a round that the robot waits for robots in its way.
 const WAITS: u8 = 32;
 
@@ -89,6 +93,7 @@ pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     is_barred: bool,
     /// Whether borders of columns are crossed one by one.
     careful: bool,
+    bumps: u8,
     round: u8,
     rest: u8,
     waits: u8,
@@ -124,6 +129,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             barred: [[0; TW]; TH],
             is_barred: false,
             careful: false,
+            bumps: 0,
             round: 0,
             rest: 0,
             waits: 0,
@@ -161,9 +167,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// Nothing counts as tried.
     fn begin_spell(&mut self) {
         self.tried = [[0; TW]; TH];
-        self.begin_round();
+        self.bumps = 0;
         self.round = 0;
         self.rest = 0;
+        self.begin_round();
     }
 
     /// What was given up for what was in the way does not count as tried, and nothing
@@ -175,8 +182,16 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         }
         self.is_barred = false;
         self.closed = [[0; TW]; TH];
-        self.waits = WAITS;
+        // At first it does something else rather than wait.
+        self.waits = if self.round > 0 { WAITS } else { 0 };
         self.begin_search();
+    }
+
+    /// Whether the planner is to step aside after a refused flight; it does so a few
+    /// times.
+    pub(crate) fn steps_aside(&mut self) -> bool {
+        self.bumps = self.bumps.saturating_add(1);
+        self.bumps <= BUMPS
     }
 
     /// One step of the rescue.
@@ -299,10 +314,13 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if self.is_hindered {
             if self.waits_for(self.hindrance) {
                 self.patience = self.patience.max(TIME);
-            } else {
-                self.give_up(target);
+                return Some(knowledge.hover(Pause::Closed));
             }
-            return Some(knowledge.hover(Pause::Closed));
+            self.bar(target);
+            if self.round > 0 {
+                self.give_up(target);
+                return Some(knowledge.hover(Pause::Closed));
+            }
         }
         self.begin_climb(knowledge);
         None

@@ -387,7 +387,7 @@ fn too_low_rises_and_too_high_sinks() {
 #[test]
 fn a_robot_in_the_only_gap_is_named() {
     for mut robot in [coordinated(), published()] {
-        let towers = (0..7).filter(|&y| y != 3).map(|y| (3, y, 60)).collect();
+        let towers = (0..7).filter(|&y| y != 3).map(|y| (3, y, 44)).collect();
         let world = World {
             towers,
             ..World::default()

@@ -387,22 +387,23 @@ fn too_low_rises_and_too_high_sinks() {
 #[test]
 fn a_robot_in_the_only_gap_is_named() {
     for mut robot in [coordinated(), published()] {
-        let towers = (0..7).filter(|&y| y != 3).map(|y| (3, y, 44)).collect();
+        // Over the ridge there is no room below the ceiling, but in its saddle.
+        let height = |y| if y == 3 { 34 } else { 44 };
         let world = World {
-            towers,
+            towers: (0..7).map(|y| (3, y, height(y))).collect(),
             ..World::default()
         };
-        let other = Status {
-            position: Point::new(7.0, 7.0, 2.0),
-            target: None,
-            stopped: true,
-        };
-        // With its like it fills the gap at all heights.
-        let script: Script = Vec::from([(0..14u8)
+        // The others fill it.
+        let script: Script = Vec::from([(0..12u8)
             .map(|number| {
-                let (across, up) = (f32::from(number % 2) - 0.5, 1.7 * f32::from(number / 2));
-                let position = other.position.offset(0.0, across, up - 1.0);
-                (1 + number, Status { position, ..other })
+                let by = |every: u8, of: u8| f32::from(number / every % of);
+                let (x, y, z) = (6.2 + 0.8 * by(1, 3), 6.5 + by(3, 2), 10.5 + by(6, 2));
+                let status = Status {
+                    position: Point::new(x, y, z),
+                    target: None,
+                    stopped: true,
+                };
+                (1 + number, status)
             })
             .collect()]);
         let (stop, step) = fly(&mut robot, &world, &script, u32::MAX, 30_000);

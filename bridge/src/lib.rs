@@ -27,4 +27,4 @@ pub use survey::{
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 
 /// Raised whenever a message changes: both sides must be built from one source.
-pub const VERSION: u8 = 2;
+pub const VERSION: u8 = 3;

@@ -7,7 +7,7 @@ use heapless::Vec;
 use planner_core::radio::{FrameError, LinkConfig};
 use planner_core::surface::{Bits, Column, Height, Patch, Surface, Tile};
 use planner_core::survey::{Action, Knowledge, Motion, Status};
-use planner_core::{Point, coordinated_survey, fcao};
+use planner_core::{Point, Wait, coordinated_survey, fcao};
 use serde::{Deserialize, Serialize};
 
 use crate::{Cost, Memory};
@@ -58,6 +58,8 @@ pub enum SurveyRequest<'a> {
     Merge(PatchRecord<'a>),
     /// [`SurveyReply::Decided`].
     Tick,
+    /// Tries again what was given up; [`SurveyReply::Done`].
+    Resume,
     /// How the flight went, and where the robot is; [`SurveyReply::Done`].
     Report(Motion, Point),
     /// [`SurveyReply::Sent`].
@@ -93,6 +95,8 @@ pub enum SurveyReply {
     Decided {
         /// What to do.
         action: Action,
+        /// Why the robot hovers.
+        waiting: Option<Wait>,
         /// Work of the decision.
         work: u32,
         /// What the step added to the reward.

@@ -4,8 +4,7 @@ use host_sim::medium::MediumKind;
 use host_sim::survey::octree::OcTree;
 use host_sim::survey::{Deed, Kill, Planner, Scenario, Terrain, look, octree, run, voxels};
 use planner_core::surface::Height;
-use planner_core::survey::Stop;
-use planner_core::{Cell, Direction, Extent, Point};
+use planner_core::{Cell, Direction, Extent, Point, Stop};
 use proptest::prelude::*;
 
 const ALL: [Planner; 6] = [

@@ -9,7 +9,7 @@ use bridge::{
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
 use planner_core::survey::{Action, Knowledge, Motion, Status, Surveyor};
-use planner_core::{Extent, Point, RobotId};
+use planner_core::{Extent, Point, RobotId, Wait};
 
 use super::emulator::Chip;
 use super::error::ChipError;
@@ -30,6 +30,7 @@ pub(super) struct SurveyProxy<const T: usize> {
     mirror: Mirror<T>,
     /// What the chip said last of itself.
     status: Status,
+    waiting: Option<Wait>,
     work: u32,
 }
 
@@ -68,6 +69,7 @@ impl<const T: usize> SurveyProxy<T> {
             clock_hz: 1,
             status: mirror.status(),
             mirror,
+            waiting: None,
             work: 0,
         };
         match chip.and_then(|chip| proxy.start(chip, planner, extent)) {
@@ -195,6 +197,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         };
         let SurveyReply::Decided {
             action,
+            waiting,
             work,
             gain,
             reward,
@@ -205,6 +208,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
             return Action::Hover;
         };
         self.work = work;
+        self.waiting = waiting;
         // What was decided goes into frames.
         self.mirror.0.set_target(self.status.target);
         if let Action::Stop(reason) = action {
@@ -216,6 +220,15 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
             self.other_map();
         }
         action
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        self.waiting
+    }
+
+    fn resume(&mut self) {
+        self.mirror.resume();
+        self.tell(None, &SurveyRequest::Resume);
     }
 
     fn report(&mut self, motion: Motion, at: Point) {

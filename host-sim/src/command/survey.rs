@@ -187,6 +187,11 @@ impl Survey {
                 words(trace.ticks_to(1.0))
             );
             println!("  violations         {}", trace.violations);
+            for (number, stop) in trace.stops.iter().enumerate() {
+                let stop = stop.map(|stop| stop.to_string());
+                let stop = stop.as_deref().unwrap_or("had not stopped");
+                println!("  robot {number:<12} {stop}");
+            }
             println!("  trace digest       {}", trace.digest());
             println!("  results            {}", path.display());
         }
@@ -231,6 +236,8 @@ fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
         "work": work.map(|index| u64::from(trace.work[index])).sum::<u64>(),
         "frames_sent": sent.iter().map(|sent| sent.frames).sum::<u32>(),
         "bytes_sent": sent.iter().map(|sent| sent.bytes).sum::<u32>(),
+        "stop": trace.stops[robot].map(|stop| stop.name()),
+        "stop_reason": trace.stops[robot].map(|stop| stop.to_string()),
     })
 }
 

@@ -4,7 +4,11 @@
 use planner_core::radio::LinkConfig;
 use planner_core::surface::{Bits, Surface};
 use planner_core::survey::{Action, Knowledge, Limits, PATIENCE, SetupError, Surveyor};
-use planner_core::{Cell, Extent, Point, RobotId};
+use planner_core::{Cell, Extent, Point, RobotId, Stop};
+
+/// Steps without gain after which a [`Follower`] gives up. The published methods never
+/// do.
+const GIVE_UP: u16 = 1000;
 
 /// Who chooses the frontier that a [`Follower`] flies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +25,8 @@ pub struct Follower<const TW: usize, const TH: usize> {
     knowledge: Knowledge<TW, TH>,
     guide: Guide,
     order: (Option<Cell>, u32),
+    /// Where a flight was refused since the last gain.
+    refused: Option<Cell>,
 }
 
 impl<const TW: usize, const TH: usize> Follower<TW, TH> {
@@ -37,6 +43,7 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
             knowledge,
             guide,
             order: (None, 0),
+            refused: None,
         })
     }
 
@@ -56,8 +63,28 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
     }
 
     fn tick(&mut self) -> Action {
-        if let Some(complete) = self.knowledge.begin_tick() {
-            return complete;
+        let action = match self.knowledge.begin_tick() {
+            Some(action) => action,
+            None => self.decide(),
+        };
+        self.knowledge.end_tick(action)
+    }
+}
+
+impl<const TW: usize, const TH: usize> Follower<TW, TH> {
+    fn decide(&mut self) -> Action {
+        if let Some((_, to)) = self.knowledge.take_refused() {
+            self.refused = Some(to.cell());
+        } else if self.knowledge.gain() > 0.0 {
+            self.refused = None;
+        }
+        if self.knowledge.idle() >= GIVE_UP {
+            let frontiers = self.knowledge.surface().frontiers();
+            let at = self.knowledge.unseen_place();
+            return self.knowledge.stop(match self.refused {
+                Some(at) => Stop::Blocked { frontiers, at },
+                None => Stop::Unseen { frontiers, at },
+            });
         }
         let stuck = self.knowledge.idle() >= PATIENCE;
         let (target, work) = if self.guide == Guide::Closest || stuck {

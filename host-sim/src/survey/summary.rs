@@ -1,6 +1,5 @@
 //! A survey in one JSON object.
 
-use planner_core::survey::Stop;
 use serde::Serialize;
 
 use super::{Deed, Planner, Safety, Trace};
@@ -81,7 +80,8 @@ pub struct RobotSummary {
     pub frames_sent: u32,
     /// Their bytes.
     pub bytes_sent: u32,
-    /// `complete`, `unseen`; `null` if it had not stopped.
+    /// [`Stop::name`](planner_core::Stop::name) of the reason; `null` if it had not
+    /// stopped.
     pub stop: Option<&'static str>,
     /// The reason in words.
     pub stop_reason: Option<String>,
@@ -134,10 +134,7 @@ impl RobotSummary {
         let way = trace.way(robot, u32::MAX);
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
         let start = trace.starts[robot];
-        let stop = trace.of(robot).last().and_then(|record| match record.deed {
-            Deed::Stopped(stop) => Some(stop),
-            _ => None,
-        });
+        let stop = trace.stop(robot);
         let dies = |kill: &super::Kill| kill.robot == robot && kill.step < trace.seen.len() as u32;
         Self {
             start: (start.x, start.y, start.z),
@@ -149,10 +146,7 @@ impl RobotSummary {
             work: trace.of(robot).map(|record| u64::from(record.work)).sum(),
             frames_sent: trace.of(robot).map(|record| record.sent.frames).sum(),
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
-            stop: stop.map(|stop| match stop {
-                Stop::Complete => "complete",
-                Stop::Unseen { .. } => "unseen",
-            }),
+            stop: stop.map(|stop| stop.name()),
             stop_reason: stop.map(|stop| stop.to_string()),
             alive: !trace.scenario.kills.iter().any(dies),
         }

@@ -1,7 +1,8 @@
 //! What a run leaves behind.
 //!
 //! A trace file is text. Line 1 is a JSON object, the *header*: the scenario with the
-//! terrain's heights in quarters of a cell, the number of records and their digest.
+//! terrain's heights in quarters of a cell, why each robot had stopped at the end, the
+//! number of records and their digest.
 //! Line 2 names the columns; every further line is one record, [`COLUMNS`]. Numbers
 //! with a decimal point are the shortest that read back as the same `f32`.
 //!
@@ -14,8 +15,7 @@ mod read;
 use std::io;
 
 use planner_core::surface::Column;
-use planner_core::survey::Stop;
-use planner_core::{Cell, Extent, Point};
+use planner_core::{Cell, Extent, Point, Stop};
 use serde_json::json;
 use sha2::{Digest, Sha256};
 
@@ -58,8 +58,9 @@ pub struct Record {
     pub robot: u8,
     /// Where the robot is after it.
     pub at: Point,
-    /// What became of it; in the file 0 flew, 1 refused, 2 hovered, 32 complete, 33
-    /// something was left unseen.
+    /// What became of it; in the file and the digest 0 flew, 1 refused, 2 hovered, from
+    /// 32 on had stopped: 32 and [`Stop::code`], but 33 for [`Stop::Unseen`], as in the
+    /// first traces, and 39 for [`Stop::Enclosed`].
     pub deed: Deed,
     /// The frontier that it announces; in the file and the digest -1, -1 for none.
     pub target: Option<Cell>,
@@ -79,8 +80,9 @@ impl Record {
             Deed::Flew => 0,
             Deed::Refused => 1,
             Deed::Hovered => 2,
-            Deed::Stopped(Stop::Complete) => 32,
             Deed::Stopped(Stop::Unseen { .. }) => 33,
+            Deed::Stopped(Stop::Enclosed { .. }) => 39,
+            Deed::Stopped(stop) => 32 + stop.code(),
         }
     }
 
@@ -190,6 +192,14 @@ impl Trace {
             .filter(move |record| usize::from(record.robot) == robot)
     }
 
+    /// Why `robot` had stopped at the end, if it had.
+    pub fn stop(&self, robot: usize) -> Option<Stop> {
+        match self.of(robot).last()?.deed {
+            Deed::Stopped(stop) => Some(stop),
+            _ => None,
+        }
+    }
+
     /// Where `robot` was, from the start until after `steps` steps.
     pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
         let start = self.starts.get(robot).copied();
@@ -207,6 +217,7 @@ impl Trace {
     pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
         let Scenario { limits, kills, .. } = &self.scenario;
         let kills: Vec<_> = kills.iter().map(|kill| (kill.robot, kill.step)).collect();
+        let stops: Vec<_> = (0..self.robots).map(|robot| self.stop(robot)).collect();
         let starts: Vec<_> = self.starts.iter().map(|p| [p.x, p.y, p.z]).collect();
         let heights: Vec<Vec<u8>> = (0..self.extent.height as i16)
             .map(|y| {
@@ -234,6 +245,7 @@ impl Trace {
             "max_ticks": self.scenario.max_ticks,
             "starts": starts,
             "deaths": kills,
+            "stops": stops,
             "world": { "name": self.terrain.name(), "heights": heights },
         });
         writeln!(to, "{header}\n{}", COLUMNS.join(","))?;

@@ -7,6 +7,14 @@
 //! and its local model is fitted not only to the past but to probes of the map ahead.
 //! Every decision looks at a bounded neighbourhood, the tile counts, and at most
 //! [`MAX_PEERS`](crate::survey::MAX_PEERS) robots.
+//!
+//! # Why it ends
+//! Pockets, swaths and frontiers are heuristics, and what others say of themselves bends
+//! them: a robot that hears of rivals everywhere leaves everything to them. But all
+//! three serve only as long as something is gained: after [`PATIENCE`] steps in a row
+//! without it, or six near a target, the rescue decides, which heeds nobody's claims.
+//! The six are forgotten with the next gain too. So the proof in `survey/rescue.rs`
+//! holds here, with its case 1.
 
 mod frontier;
 mod pocket;
@@ -182,16 +190,25 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
     }
 
     fn tick(&mut self) -> Action {
-        if let Some(complete) = self.knowledge.begin_tick() {
-            return complete;
-        }
+        let action = match self.knowledge.begin_tick() {
+            Some(action) => action,
+            None => self.decide(),
+        };
+        self.knowledge.end_tick(action)
+    }
+}
+
+impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
+    fn decide(&mut self) -> Action {
         let gain = self.knowledge.gain();
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        if self.knowledge.take_blocked() {
+        let needs_rescue = self.knowledge.idle() >= PATIENCE;
+        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
+            self.knowledge.take_refused();
             return self.sidestep();
         }
-        if self.is_stuck(gain) || self.knowledge.idle() >= PATIENCE {
+        if self.is_stuck(gain) || needs_rescue {
             return self.rescue.tick(&mut self.knowledge);
         }
         if let Some(pocket) = self.nearest_pocket()

@@ -2,6 +2,11 @@
 //! is stuck [Renzaglia2019 Algorithm 1].
 //!
 //! The paper leaves points open: each reading taken here is named where it is applied.
+//!
+//! The paper's robots never stop. Here every step without gain counts, and after
+//! [`PATIENCE`] of them in a row the rescue decides until something is gained: why that
+//! ends, whatever refuses a flight, whatever no look shows and whatever others say, is
+//! proved in `survey/rescue.rs`.
 
 mod history;
 
@@ -219,17 +224,26 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
         &mut self.knowledge
     }
 
-    // [Renzaglia2019 Algorithm 1]
     fn tick(&mut self) -> Action {
-        if let Some(complete) = self.knowledge.begin_tick() {
-            return complete;
-        }
+        let action = match self.knowledge.begin_tick() {
+            Some(action) => action,
+            None => self.decide(),
+        };
+        self.knowledge.end_tick(action)
+    }
+}
+
+impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
+    // [Renzaglia2019 Algorithm 1]
+    fn decide(&mut self) -> Action {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        if self.knowledge.take_blocked() {
+        let needs_rescue = self.knowledge.idle() >= PATIENCE;
+        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
+            self.knowledge.take_refused();
             return self.wander();
         }
-        if self.knowledge.idle() >= PATIENCE {
+        if needs_rescue {
             return self.rescue.tick(&mut self.knowledge);
         }
         if self.knowledge.gain() > self.least_gain() {

@@ -16,18 +16,31 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     /// altitude over it, below the ceiling, and clear of every robot heard of.
     ///
     /// Cost: the columns crossed, and the robots heard of.
+    /// A robot that is too high may sink, and one that is too low may rise.
     // [Renzaglia2019 §3, C(P) ≤ 0]
     pub fn may_fly(&self, to: Point) -> bool {
+        self.is_open(to) && self.robot_in_the_way(to).is_none()
+    }
+
+    /// The same without a look at other robots.
+    pub(crate) fn is_open(&self, to: Point) -> bool {
+        let Point { x, y, z } = self.position;
+        let is_rise = (to.x, to.y) == (x, y) && to.z > z;
         to.is_finite()
-            && to.z <= self.limits.ceiling
+            && (to.z <= self.limits.ceiling || to.z < z)
             && clearance(self.position, to, |cell| self.surface.height(cell))
-                .is_some_and(|least| least >= self.limits.min_altitude)
-            && self.peers().all(|peer| {
-                let other = peer.status.position;
-                // A robot that is already too near may be flown away from.
-                distance_to_segment(other, self.position, to) >= self.limits.separation
-                    || to.distance_squared(other) > self.position.distance_squared(other)
-            })
+                .is_some_and(|least| least >= self.limits.min_altitude || is_rise)
+    }
+
+    /// A robot that a straight flight to `to` would come too near to. One that is
+    /// already too near may be flown away from.
+    pub(crate) fn robot_in_the_way(&self, to: Point) -> Option<Point> {
+        let mut others = self.peers().map(|peer| peer.status.position);
+        others.find(|&other| {
+            let is_clear = distance_to_segment(other, self.position, to) >= self.limits.separation
+                || to.distance_squared(other) > self.position.distance_squared(other);
+            !is_clear
+        })
     }
 
     /// One step at heading `heading` (radians from east to south), `length` long on
@@ -76,10 +89,19 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             .filter(|to| to.distance_squared(self.position) > 1e-6)
     }
 
-    /// Straight up by one step, or to the ceiling.
+    /// The straight step towards the place of `goal` on the plan, as
+    /// [`step_along`](Self::step_along).
+    pub(crate) fn step_to(&self, goal: Point, cruise: f32) -> Point {
+        let (dx, dy) = (goal.x - self.position.x, goal.y - self.position.y);
+        let reach = math::length(dx, dy).min(self.limits.step);
+        self.step_along(math::heading(dx, dy), reach, cruise)
+    }
+
+    /// Straight up by one step, or to the ceiling; from above it down by as much.
     pub(crate) fn climb(&self) -> Point {
-        let z = (self.position.z + self.limits.step).min(self.limits.ceiling);
-        Point::new(self.position.x, self.position.y, z)
+        let Point { x, y, z } = self.position;
+        let step = self.limits.step;
+        Point::new(x, y, (z + step).min(self.limits.ceiling.max(z - step)))
     }
 }
 

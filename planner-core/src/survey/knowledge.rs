@@ -5,15 +5,22 @@ use core::fmt;
 use super::link::Link;
 use super::news::{MAX_RANGE, News, REPEATS};
 use super::peers::{Peer, Peers};
-use super::{Action, Limits, Motion, Status, Stop};
-use crate::cell::{Cell, Extent};
+use super::{Action, Limits, Motion, Status};
+use crate::cell::{Cell, Direction, Extent};
 use crate::point::Point;
 use crate::radio::{FrameError, HeightRecord, LinkConfig, MAX_LEN};
-use crate::robot::RobotId;
-use crate::surface::{Bits, Column, Patch, Surface, Tile, TooLarge, distance_to_tile};
+use crate::robot::{RobotId, Stop, Wait};
+use crate::surface::{Bits, Column, Height, Patch, Surface, Tile, TooLarge, distance_to_tile};
 
 /// Unknown tiles that the turn passes over in a step.
 const TURN_STRIDE: u8 = 8;
+
+/// Looks in a row that show nothing where they must show something, after which the
+/// sensor is taken to have failed.
+const SILENCE: u8 = 100;
+
+/// Robots heard of at places beyond these are not: distances would overflow.
+const FARTHEST: f32 = 65_536.0;
 
 /// A planner cannot be set up like this.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,12 +71,49 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     gain: f32,
     reward: f32,
     idle: u16,
+    /// The flight that was ordered last, and whether it was refused.
+    flight: (Point, Point),
     blocked: bool,
+    /// Whether the last pose was one that nothing can be decided from.
+    lost: bool,
+    /// Whether there was a look since the last tick.
+    looked: bool,
+    /// Looks in a row that showed nothing where they must show something.
+    silent: u8,
     link: Link,
     /// Where the planner said that it goes.
     pub(super) target: Option<Cell>,
     pub(super) stopped: bool,
+    /// Why, and the number of known columns then.
+    reason: (Stop, u32),
+    /// Whether what was given up is to be tried again.
+    resumed: bool,
+    pause: Pause,
     work: u32,
+}
+
+/// Why the robot hovers. As an `Option<Wait>`, but all zero is none: then a `static`
+/// planner takes no flash.
+#[repr(u8)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pause {
+    None = 0,
+    Sight = 1,
+    Pose = 2,
+    Search = 3,
+    Closed = 4,
+}
+
+impl Pause {
+    pub(crate) const fn reason(self) -> Option<Wait> {
+        match self {
+            Self::None => None,
+            Self::Sight => Some(Wait::Sight),
+            Self::Pose => Some(Wait::Pose),
+            Self::Search => Some(Wait::Search),
+            Self::Closed => Some(Wait::Closed),
+        }
+    }
 }
 
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
@@ -85,10 +129,17 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             gain: 0.0,
             reward: 0.0,
             idle: 0,
+            flight: (Point::new(0.0, 0.0, 0.0), Point::new(0.0, 0.0, 0.0)),
             blocked: false,
+            lost: false,
+            looked: false,
+            silent: 0,
             link: Link::vacant(),
             target: None,
             stopped: false,
+            reason: (Stop::Complete, 0),
+            resumed: false,
+            pause: Pause::None,
             work: 0,
         }
     }
@@ -136,9 +187,14 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.reward = 0.0;
         self.idle = 0;
         self.blocked = false;
+        self.lost = false;
+        self.looked = false;
+        self.silent = 0;
         self.link = Link::new(link, id, extent);
         self.target = None;
         self.stopped = false;
+        self.resumed = false;
+        self.pause = Pause::None;
         self.work = 0;
         Ok(())
     }
@@ -288,20 +344,53 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         Ok(self.surface.known_columns() - before)
     }
 
+    /// Whether something can be decided at `at`: it is finite, on the map, and not
+    /// below the ground, as far as heights in quarters of a cell tell.
+    fn is_pose(&self, at: Point) -> bool {
+        let cell = at.cell();
+        let ground = self.surface.height(cell).map_or(0.0, Height::cells);
+        at.is_finite() && self.surface.extent().contains(cell) && at.z >= ground - Height(1).cells()
+    }
+
     pub(super) fn observe(&mut self, at: Point, columns: &[Column]) {
-        if at.is_finite() {
-            self.position = at;
+        self.lost = !self.is_pose(at);
+        self.looked = true;
+        if self.lost {
+            self.blocked = false;
+            self.news.begin(self.position);
+            return;
         }
-        self.news.begin(self.position);
+        self.position = at;
+        self.news.begin(at);
         for &column in columns {
             if self.surface.learn(column) {
                 self.news.add(column.cell);
             }
         }
+        if !columns.is_empty() {
+            if self.silent >= SILENCE {
+                self.stopped = false;
+            }
+            self.silent = 0;
+        } else if self.is_ground_in_range() {
+            self.silent = self.silent.saturating_add(1);
+        }
+    }
+
+    /// Whether any look from here must show something, as far as is known: the ground
+    /// beneath. Before anything is known every look must.
+    fn is_ground_in_range(&self) -> bool {
+        let cell = self.position.cell();
+        let is_near = |height: Height| {
+            let ground = Point::over(cell, height.cells());
+            self.position.distance(ground) <= self.limits.range
+        };
+        self.surface.known_columns() == 0 || self.surface.height(cell).is_some_and(is_near)
     }
 
     pub(super) fn hear(&mut self, id: u8, status: Status) {
-        if status.position.is_finite() {
+        let Point { x, y, z } = status.position;
+        if [x, y, z].iter().all(|at| at.abs() < FARTHEST) {
             self.peers.hear(id, status);
         }
     }
@@ -314,43 +403,118 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     pub(super) fn report(&mut self, motion: Motion, at: Point) {
-        self.blocked = motion == Motion::Blocked;
-        if at.is_finite() {
+        self.lost = !self.is_pose(at);
+        self.blocked = motion == Motion::Blocked && !self.lost;
+        if !self.lost {
             self.position = at;
         }
     }
 
-    /// Whether the last flight was refused; asking clears it.
-    pub(crate) fn take_blocked(&mut self) -> bool {
-        core::mem::take(&mut self.blocked)
+    /// Whether the last flight was refused.
+    pub(crate) const fn is_blocked(&self) -> bool {
+        self.blocked
     }
 
-    /// The head of every tick: counts the step's gain, and stops the robot if nothing
-    /// is left to see.
+    /// The last flight, from where to where, if it was refused; asking clears it.
+    pub fn take_refused(&mut self) -> Option<(Point, Point)> {
+        core::mem::take(&mut self.blocked).then_some(self.flight)
+    }
+
+    /// The tail of every tick: remembers the flight that is ordered.
+    pub fn end_tick(&mut self, action: Action) -> Action {
+        if let Action::Fly(to) = action {
+            self.flight = (self.position, to);
+        }
+        action
+    }
+
+    /// The head of every tick: counts the step's gain. It ends the tick where there is
+    /// nothing to decide: without a pose, after a stop, when everything is known, or
+    /// when the sensor shows nothing.
     ///
-    /// Cost: the columns seen first in this step.
+    /// Cost: the columns seen first in this step; and a
+    /// [`closest_frontier`](Self::closest_frontier) for a sensor that failed.
     pub fn begin_tick(&mut self) -> Option<Action> {
         self.work = 0;
-        self.gain = self.news.reward();
+        self.pause = Pause::None;
+        // Without another look nothing was gained.
+        let has_looked = core::mem::take(&mut self.looked);
+        self.gain = if has_looked { self.news.reward() } else { 0.0 };
         self.reward += self.gain;
+        self.peers.age();
+        self.turn = self.next_turn();
+        self.link.tick();
+        if self.lost {
+            return Some(self.hover(Pause::Pose));
+        }
         self.idle = if self.gain > 0.0 {
             0
         } else {
             self.idle.saturating_add(1)
         };
-        self.peers.age();
-        self.turn = self.next_turn();
-        self.link.tick();
-        let complete = self.surface.known_columns() > 0 && self.surface.frontiers() == 0;
+        let known_columns = self.surface.known_columns();
+        let (reason, known_then) = self.reason;
+        if self.stopped && known_then == known_columns {
+            return Some(self.stop(reason));
+        }
         self.stopped = false;
-        complete.then(|| self.stop(Stop::Complete))
+        if known_columns > 0 && self.surface.frontiers() == 0 {
+            return Some(self.stop(Stop::Complete));
+        }
+        match self.silent {
+            0 => None,
+            SILENCE.. => Some(self.stop(Stop::Unseen {
+                frontiers: self.surface.frontiers(),
+                at: self.unseen_place(),
+            })),
+            _ => Some(self.hover(Pause::Sight)),
+        }
     }
 
-    /// Stops the robot for `reason`.
+    /// Stops the robot for `reason`, until it knows more.
     pub fn stop(&mut self, reason: Stop) -> Action {
         self.target = None;
         self.stopped = true;
+        self.reason = (reason, self.surface.known_columns());
         Action::Stop(reason)
+    }
+
+    /// Stays for this step, and says why.
+    pub(crate) fn hover(&mut self, pause: Pause) -> Action {
+        self.pause = pause;
+        Action::Hover
+    }
+
+    /// Why the robot hovers, where it is known.
+    pub(super) const fn waiting(&self) -> Option<Wait> {
+        self.pause.reason()
+    }
+
+    pub(super) fn resume(&mut self) {
+        self.stopped = false;
+        self.resumed = true;
+        self.silent = 0;
+        self.idle = 0;
+    }
+
+    /// Whether what was given up is to be tried again; asking clears it.
+    pub(crate) fn take_resumed(&mut self) -> bool {
+        core::mem::take(&mut self.resumed)
+    }
+
+    /// An unknown column beside the nearest frontier; the robot's own without any.
+    ///
+    /// Cost: a [`closest_frontier`](Self::closest_frontier).
+    pub fn unseen_place(&self) -> Cell {
+        let (nearest, _) = self.closest_frontier();
+        nearest
+            .and_then(|cell| {
+                let beside = Direction::ALL.map(|direction| cell.step(direction));
+                beside
+                    .into_iter()
+                    .find(|&beside| self.surface.is_unknown(beside))
+            })
+            .unwrap_or(self.position.cell())
     }
 
     /// The tile to tell next: the first of a few of which something is known.

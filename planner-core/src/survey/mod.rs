@@ -22,15 +22,15 @@ pub use news::MAX_RANGE;
 pub use peers::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use rescue::PATIENCE;
 
+pub(crate) use knowledge::Pause;
 pub(crate) use peers::Peers;
 pub(crate) use rescue::Rescue;
 pub(crate) use sender::Sender;
 
-use core::fmt;
-
 use crate::cell::Cell;
 use crate::point::Point;
 use crate::radio::{FrameError, MAX_LEN};
+use crate::robot::{Stop, Wait};
 use crate::surface::{Column, Patch};
 
 /// The physics of a fleet: what its sensors reach and which poses are allowed, the
@@ -67,38 +67,13 @@ impl Limits {
 pub enum Action {
     /// Fly straight to this point, at most one step away.
     Fly(Point),
-    /// Stay for this step.
+    /// Stay for this step. [`Surveyor::waiting`] may say why.
     Hover,
-    /// Done, for this reason. A robot that then hears of more goes on.
+    /// Done, for this reason: [`Stop::Complete`] if every column of the map is known;
+    /// else the robot gave up, [`Stop::Unseen`], [`Stop::Blocked`] or [`Stop::Held`],
+    /// and the reason names a column. Every later tick returns the same, until the
+    /// robot hears of more, or [`Surveyor::resume`].
     Stop(Stop),
-}
-
-/// Why a robot stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Stop {
-    /// Every column of the map is known.
-    Complete,
-    /// There is unknown surface left, and flying close by every frontier of it
-    /// showed none of it.
-    Unseen {
-        /// Frontiers left.
-        frontiers: u32,
-    },
-}
-
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Complete => write!(f, "complete"),
-            Self::Unseen { frontiers } => {
-                write!(
-                    f,
-                    "gave up: {frontiers} frontiers show nothing new from anywhere near"
-                )
-            }
-        }
-    }
 }
 
 /// How the last [`Action::Fly`] went.
@@ -145,7 +120,27 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         self.knowledge().work()
     }
 
+    /// Why the last [`tick`](Self::tick) was [`Action::Hover`], where the planner tells.
+    fn waiting(&self) -> Option<Wait> {
+        self.knowledge().waiting()
+    }
+
+    /// Goes on after a stop with the map at hand: what was given up is tried again.
+    /// Without a stop it does only the latter.
+    fn resume(&mut self) {
+        self.knowledge_mut().resume();
+    }
+
     /// Begins a step: where the robot is, and the columns that it sees from there.
+    ///
+    /// From a pose that is not finite, off the map or below the known ground nothing is
+    /// learnt and nothing decided: the robot hovers, and [`waiting`](Self::waiting) is
+    /// [`Wait::Pose`], until a pose is good again.
+    ///
+    /// What a survey rests on: a look from above a column, no farther from it than the
+    /// sensor's range, shows that column. A sensor that shows nothing from there a
+    /// hundred times in a row is taken to have failed: [`Stop::Unseen`], until it shows
+    /// something.
     fn observe(&mut self, at: Point, columns: &[Column]) {
         self.knowledge_mut().observe(at, columns);
     }
@@ -180,3 +175,6 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         self.knowledge_mut().receive(bytes)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,12 +6,52 @@
 //! complete. Just above the least altitude and just before the unknown column even a
 //! deep drop shows; from there the robot climbs to the ceiling, and a tower's top
 //! shows.
+//!
+//! # What refuses
+//! A flight that is refused, by glass or by a robot that nobody heard of, is first taken
+//! for a passing robot's sake, and the planner steps aside. From the third refusal on the
+//! rescue is *careful*: it crosses one border between columns at a time, so that it learns
+//! which column refuses. That column is *closed*, at all heights, and ways lead round
+//! it. A column that a robot heard of keeps from being entered is closed too, after a
+//! while. When no way to a frontier is left because of closed columns, all that cannot
+//! be reached with it are given up together. When nothing else is left, the closed
+//! columns are opened and everything is tried again, [`ROUNDS`] times and after longer
+//! and longer rests; then the stop says what was in the way, and where.
+//!
+//! # Why a survey ends
+//! Let N be the columns of the map, F ≤ N frontiers, and a *spell* the steps in which
+//! no column becomes known and nobody says [`resume`](super::Surveyor::resume). There
+//! are at most N + 1 of these between two calls of it. Claim: in a spell with good poses
+//! the robot stops. Nothing that other robots say of themselves has part in it: it only
+//! forbids flights, and each of the cases counts those.
+//! 1. *Planners.* A step without a new column has no gain, and a step with gain ends
+//!    the spell. So after [`PATIENCE`] steps every further one is the rescue's, but for
+//!    those of case 2 and [`BUMPS`] steps aside.
+//! 2. *A sensor that shows nothing where it must*: the robot hovers, and stops after a
+//!    hundred such looks in a row. Any other look that shows something known brings it
+//!    back to case 3; looks that may show nothing are steps of case 3.
+//! 3. *The rescue.* A round is a search, a target, its edges, the next target. Each
+//!    search looks at every tile once, so it ends; a target that was looked over or
+//!    given up is not chosen again in the round. So there are at most F targets of 4
+//!    edges. One edge takes the wave of its way, which ends as it wets each column
+//!    once; flights, each of which lowers `patience`; and climbs, each of which lowers
+//!    it as well. `patience` is set when an edge, a climb, or a leg begins. A *leg* is
+//!    the flight to the next column of the way; an edge has at most N of them by count,
+//!    whatever moves the robot. A refusal closes a column, at most N in a round, or
+//!    ends the flight to the edge or the climb. Waiting for robots in the way, in all
+//!    rounds but the first, lowers `waits`, which is set once a round. There are at most [`ROUNDS`] rests.
+//! 4. *No target is left*, and nothing was given up for what was in the way, or all
+//!    rounds are over: it stops, and as long as the spell lasts every tick is that stop.
+//!
+//! Steps without a good pose are outside of all counts: nothing is decided in them.
 
 mod way;
 
-use super::{Action, Knowledge, Stop};
+use super::knowledge::Pause;
+use super::{Action, Knowledge};
 use crate::cell::{Cell, Direction};
 use crate::point::Point;
+use crate::robot::Stop;
 use crate::surface::{Bits, Columns, Tile};
 use way::{Way, word_of};
 
@@ -24,10 +64,45 @@ const MARGIN: f32 = 0.1;
 /// Tiles looked at in a step for a frontier to fly to.
 const SLICE: usize = 64;
 
+/// How often everything is tried again before what was in the way is taken to stay.
+const ROUNDS: u8 = 3;
+
+/// Steps of rest before the first of these; each time twice as many.
+const REST: u8 = 16;
+
+/// Refused flights after which the planner steps aside, before the rescue is careful.
+const BUMPS: u8 = 2;
+
+/// Steps in a round that the robot waits for robots in its way.
+const WAITS: u8 = 32;
+
+/// Steps that it has when one has left.
+const TIME: u16 = 8;
+
 /// Which frontiers have been looked over since the map last grew, and the one that is.
 #[derive(Clone, Debug)]
 pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     tried: [[u64; TW]; TH],
+    /// Columns that refused a flight in this round.
+    closed: [[u64; TW]; TH],
+    /// The column closed last, and whether by a robot that was heard of.
+    obstacle: (Cell, bool),
+    /// Frontiers that were given up in this round for what was in the way, and whether
+    /// there are any.
+    barred: [[u64; TW]; TH],
+    is_barred: bool,
+    /// Whether borders of columns are crossed one by one.
+    careful: bool,
+    bumps: u8,
+    round: u8,
+    rest: u8,
+    waits: u8,
+    /// The robot that was in the way to the edge last, and whether one was.
+    hindrance: Point,
+    is_hindered: bool,
+    /// The column that the leg leads to, and how many more legs there may be.
+    leg: Cell,
+    legs: u32,
     known_columns: u32,
     target: Option<Cell>,
     /// The search for the next target: the tile that comes next, how many are left,
@@ -49,6 +124,19 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     pub(crate) const fn vacant() -> Self {
         Self {
             tried: [[0; TW]; TH],
+            closed: [[0; TW]; TH],
+            obstacle: (Cell::new(0, 0), false),
+            barred: [[0; TW]; TH],
+            is_barred: false,
+            careful: false,
+            bumps: 0,
+            round: 0,
+            rest: 0,
+            waits: 0,
+            hindrance: Point::new(0.0, 0.0, 0.0),
+            is_hindered: false,
+            leg: Cell::new(0, 0),
+            legs: 0,
             known_columns: 0,
             target: None,
             cursor: Tile { x: 0, y: 0 },
@@ -63,76 +151,319 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
 
     /// Starts anew, in place.
     pub(crate) fn reset(&mut self) {
-        self.tried = [[0; TW]; TH];
+        self.begin_spell();
+        self.careful = false;
+        self.leg = Cell::new(0, 0);
+        self.legs = 0;
         self.known_columns = 0;
         self.target = None;
         self.cursor = Tile { x: 0, y: 0 };
-        self.begin_search();
         self.way.begin(None);
         self.edge = 0;
         self.climbing = false;
         self.patience = 0;
     }
 
+    /// Nothing counts as tried.
+    fn begin_spell(&mut self) {
+        self.tried = [[0; TW]; TH];
+        self.bumps = 0;
+        self.round = 0;
+        self.rest = 0;
+        self.begin_round();
+    }
+
+    /// What was given up for what was in the way does not count as tried, and nothing
+    /// as closed.
+    fn begin_round(&mut self) {
+        let barred = self.barred.iter_mut().flatten();
+        for (tried, barred) in self.tried.iter_mut().flatten().zip(barred) {
+            *tried &= !core::mem::take(barred);
+        }
+        self.is_barred = false;
+        self.closed = [[0; TW]; TH];
+        // At first it does something else rather than wait.
+        self.waits = if self.round > 0 { WAITS } else { 0 };
+        self.begin_search();
+    }
+
+    /// Whether the planner is to step aside after a refused flight; it does so a few
+    /// times.
+    pub(crate) fn steps_aside(&mut self) -> bool {
+        self.bumps = self.bumps.saturating_add(1);
+        self.bumps <= BUMPS
+    }
+
     /// One step of the rescue.
     ///
-    /// Cost: 64 tiles while a target is searched for, 1024 while the way to it is, and
-    /// at most 30 flights looked at.
+    /// Cost: 64 tiles while a target is searched for, 1024 while the way to it is; every
+    /// tile where a way turns out to be barred, or a round begins; and at most 32
+    /// flights looked at.
     pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
+        let refused = knowledge.take_refused();
         let known_columns = knowledge.surface().known_columns();
-        if self.known_columns != known_columns {
+        let is_resumed = knowledge.take_resumed();
+        if self.known_columns != known_columns || is_resumed {
             self.known_columns = known_columns;
-            self.tried = [[0; TW]; TH];
-            self.begin_search();
+            self.begin_spell();
+            if self.careful {
+                // Ways led round what was closed.
+                self.target = None;
+                self.careful = false;
+            }
+        }
+        if self.rest > 0 {
+            self.rest = self.rest.saturating_sub(1);
+            return knowledge.hover(Pause::Closed);
         }
         let is_frontier = |target| knowledge.surface().is_frontier(target);
         if !self.target.is_some_and(is_frontier) {
             self.target = None;
             self.search(knowledge);
             if self.left > 0 {
-                return Action::Hover;
+                return knowledge.hover(Pause::Search);
             }
             self.target = self.nearest.map(|(_, cell)| cell);
             self.begin_search();
             self.begin(knowledge, 0);
             self.way.begin(self.target);
+        } else if let Some((from, to)) = refused {
+            self.take_refusal(knowledge, from, to);
         }
         knowledge.set_target(self.target);
         let Some(target) = self.target else {
-            return knowledge.stop(Stop::Unseen {
-                frontiers: knowledge.surface().frontiers(),
-            });
+            return self.end_round(knowledge);
         };
+        if word_of(&mut self.closed, target).is_some_and(|word| *word >> Tile::bit(target) & 1 == 1)
+        {
+            self.give_up(target);
+            return knowledge.hover(Pause::Search);
+        }
         let Some((edge, place)) = edge_of(knowledge, target, self.edge) else {
             self.mark_tried(target);
             self.target = None;
-            return Action::Hover;
+            return knowledge.hover(Pause::Search);
         };
         self.edge = edge;
-        if !self.climbing {
-            let cruise = knowledge.limits().min_altitude + MARGIN;
-            knowledge.look_at(29);
-            let next = if is_known_between(knowledge, place) {
-                place
-            } else {
-                match self.way.next(knowledge) {
-                    way::Next::Column(cell) => Point::over(cell, 0.0),
-                    way::Next::Searching => return Action::Hover,
-                    way::Next::None => place,
-                }
-            };
-            self.patience = self.patience.saturating_sub(1);
-            match knowledge.step_towards(next, cruise) {
-                Some(to) if self.patience > 0 => return Action::Fly(to),
-                _ => self.climbing = true,
-            }
+        if !self.climbing
+            && let Some(action) = self.approach(knowledge, target, place)
+        {
+            return action;
         }
         let up = knowledge.climb();
-        if up.z > knowledge.position().z && knowledge.may_fly(up) {
-            return Action::Fly(up);
+        if up.z > knowledge.position().z && self.patience > 0 && knowledge.is_open(up) {
+            let Some(robot) = knowledge.robot_in_the_way(up) else {
+                self.patience = self.patience.saturating_sub(1);
+                return Action::Fly(up);
+            };
+            if self.waits_for(robot) {
+                return knowledge.hover(Pause::Closed);
+            }
+            self.bar(target);
         }
         self.begin(knowledge, edge.saturating_add(1));
-        Action::Hover
+        knowledge.hover(Pause::Search)
+    }
+
+    /// A step to the edge at `place` of the target's column; `None` once the robot is
+    /// there, or has been on its way for too long.
+    fn approach(
+        &mut self,
+        knowledge: &mut Knowledge<TW, TH>,
+        target: Cell,
+        place: Point,
+    ) -> Option<Action> {
+        let here = knowledge.position().cell();
+        knowledge.look_at(29);
+        let is_straight = if self.careful {
+            here == target
+        } else {
+            is_known_between(knowledge, place)
+        };
+        let next = if is_straight {
+            place
+        } else {
+            match self.way.next(knowledge, &self.closed) {
+                way::Next::Column(cell) => Point::over(cell, 0.0),
+                way::Next::Searching => return Some(knowledge.hover(Pause::Search)),
+                way::Next::None if self.way.is_cut() => {
+                    self.give_up_all();
+                    return Some(knowledge.hover(Pause::Search));
+                }
+                way::Next::None => place,
+            }
+        };
+        if self.careful {
+            self.begin_leg(knowledge, here, next.cell());
+        }
+        self.patience = self.patience.saturating_sub(1);
+        let cruise = knowledge.limits().min_altitude + MARGIN;
+        if let Some(robot) = robot_in_the_way(knowledge, next, place, cruise) {
+            self.hindrance = robot;
+            self.is_hindered = true;
+        }
+        let step = if self.careful {
+            self.careful_step(knowledge, next, cruise)
+        } else {
+            knowledge.step_towards(next, cruise).map(Action::Fly)
+        };
+        if step.is_some() && self.patience > 0 {
+            return step;
+        }
+        // Not there: a robot that is in the way may be why.
+        if self.is_hindered {
+            if self.waits_for(self.hindrance) {
+                self.patience = self.patience.max(TIME);
+                return Some(knowledge.hover(Pause::Closed));
+            }
+            self.bar(target);
+            if self.round > 0 {
+                self.give_up(target);
+                return Some(knowledge.hover(Pause::Closed));
+            }
+        }
+        self.begin_climb(knowledge);
+        None
+    }
+
+    /// A step straight to `next`, which lies in this column or a neighbouring one: or
+    /// up, where the ground is steep. Where neither is allowed, its column is closed.
+    fn careful_step(
+        &mut self,
+        knowledge: &mut Knowledge<TW, TH>,
+        next: Point,
+        cruise: f32,
+    ) -> Option<Action> {
+        let here = knowledge.position();
+        let to = knowledge.step_to(next, cruise);
+        let up = knowledge.climb();
+        let is_there = to.distance_squared(here) <= 1e-6;
+        if is_there {
+            return None;
+        }
+        if knowledge.may_fly(to) {
+            return Some(Action::Fly(to));
+        }
+        if !knowledge.is_open(to) && up.z > here.z && knowledge.may_fly(up) {
+            return Some(Action::Fly(up));
+        }
+        if next.cell() == here.cell() {
+            return None;
+        }
+        if let Some(robot) = knowledge.robot_in_the_way(to)
+            && self.waits_for(robot)
+        {
+            return Some(knowledge.hover(Pause::Closed));
+        }
+        self.close(next.cell(), here.cell());
+        Some(knowledge.hover(Pause::Search))
+    }
+
+    /// The robot has come to the next column of its way: it has time for another.
+    fn begin_leg(&mut self, knowledge: &Knowledge<TW, TH>, here: Cell, next: Cell) {
+        if here == self.leg && self.legs > 0 {
+            self.legs = self.legs.saturating_sub(1);
+            self.patience = leg_steps(knowledge);
+        }
+        self.leg = next;
+    }
+
+    /// A flight was refused.
+    fn take_refusal(&mut self, knowledge: &Knowledge<TW, TH>, from: Point, to: Point) {
+        let mut crossed = Columns::new(from, to).skip(1);
+        let here = knowledge.position().cell();
+        match (crossed.next(), crossed.next()) {
+            (Some(only), None) => {
+                self.obstacle = (only.cell, false);
+                self.close(only.cell, here);
+            }
+            // Of several any may be the one: they are tried one by one.
+            (Some(_), Some(_)) => {}
+            (None, _) => {
+                self.obstacle = (here, false);
+                if let Some(target) = self.target {
+                    self.bar(target);
+                }
+                if self.climbing {
+                    self.begin(knowledge, self.edge.saturating_add(1));
+                } else {
+                    self.begin_climb(knowledge);
+                }
+            }
+        }
+        if !self.careful {
+            self.careful = true;
+            self.legs = knowledge.surface().known_columns();
+            self.patience = self.patience.max(leg_steps(knowledge));
+            self.leg = here;
+            self.way.begin(self.target);
+        }
+    }
+
+    /// From now on no way leads over `column`; the robot's own stays open.
+    fn close(&mut self, column: Cell, here: Cell) {
+        if column != here
+            && let Some(word) = word_of(&mut self.closed, column)
+        {
+            *word |= 1 << Tile::bit(column);
+        }
+        self.way.begin(self.target);
+    }
+
+    /// Something keeps the robot from looking over `frontier`.
+    fn bar(&mut self, frontier: Cell) {
+        self.is_barred = true;
+        if let Some(word) = word_of(&mut self.barred, frontier) {
+            *word |= 1 << Tile::bit(frontier);
+        }
+    }
+
+    /// The same, and it is not tried any further in this round.
+    fn give_up(&mut self, target: Cell) {
+        self.bar(target);
+        self.mark_tried(target);
+        self.target = None;
+    }
+
+    /// No way leads to the target, nor to anything that is connected with it.
+    fn give_up_all(&mut self) {
+        let words = self.tried.iter_mut().flatten();
+        let words = words.zip(self.barred.iter_mut().flatten());
+        for ((tried, barred), wet) in words.zip(self.way.wet()) {
+            *barred |= wet & !*tried;
+            *tried |= wet;
+        }
+        self.target = None;
+        self.is_barred = true;
+    }
+
+    /// Whether the robot waits for another one that is in its way.
+    fn waits_for(&mut self, robot: Point) -> bool {
+        let waits = self.waits > 0;
+        self.waits = self.waits.saturating_sub(1);
+        if !waits {
+            self.obstacle = (robot.cell(), true);
+        }
+        waits
+    }
+
+    /// Nothing is left to try: it is tried again, or the robot stops.
+    fn end_round(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
+        let frontiers = knowledge.surface().frontiers();
+        if !self.is_barred {
+            let at = knowledge.unseen_place();
+            return knowledge.stop(Stop::Unseen { frontiers, at });
+        }
+        if self.round < ROUNDS {
+            self.rest = REST << self.round;
+            self.round = self.round.saturating_add(1);
+            self.begin_round();
+            return knowledge.hover(Pause::Closed);
+        }
+        knowledge.stop(match self.obstacle {
+            (at, false) => Stop::Blocked { frontiers, at },
+            (at, true) => Stop::Held { frontiers, at },
+        })
     }
 
     fn begin_search(&mut self) {
@@ -168,10 +499,23 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     fn begin(&mut self, knowledge: &Knowledge<TW, TH>, edge: u8) {
         self.edge = edge;
         self.climbing = false;
+        self.is_hindered = false;
+        self.leg = knowledge.position().cell();
+        self.legs = knowledge.surface().known_columns();
         self.patience = self.target.map_or(0, |cell| {
             let way = knowledge.position().plan_distance(Point::over(cell, 0.0));
             ((8.0 * way / knowledge.limits().step) as u16).saturating_add(30)
         });
+        if self.careful {
+            self.patience = self.patience.max(leg_steps(knowledge));
+        }
+    }
+
+    /// Sets out to the ceiling: twice the steps of a straight climb, and a few.
+    fn begin_climb(&mut self, knowledge: &Knowledge<TW, TH>) {
+        self.climbing = true;
+        let rise = knowledge.limits().ceiling - knowledge.position().z;
+        self.patience = ((2.0 * rise / knowledge.limits().step) as u16).saturating_add(8);
     }
 
     fn mark_tried(&mut self, cell: Cell) {
@@ -179,6 +523,32 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             *word |= 1 << Tile::bit(cell);
         }
     }
+}
+
+/// The robot that keeps this one from flying straight to `next`, or up, or that stands
+/// where it is going.
+fn robot_in_the_way<const TW: usize, const TH: usize>(
+    knowledge: &Knowledge<TW, TH>,
+    next: Point,
+    place: Point,
+    cruise: f32,
+) -> Option<Point> {
+    let there = || {
+        let separation = knowledge.limits().separation;
+        let mut robots = knowledge.peers().map(|peer| peer.status.position);
+        robots.find(|robot| robot.plan_distance(place) < separation)
+    };
+    [knowledge.step_to(next, cruise), knowledge.climb()]
+        .into_iter()
+        .filter(|&to| knowledge.is_open(to))
+        .find_map(|to| knowledge.robot_in_the_way(to))
+        .or_else(there)
+}
+
+/// Steps for the way to a neighbouring column, and up along a cliff to the ceiling.
+fn leg_steps<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> u16 {
+    let limits = knowledge.limits();
+    ((2.0 * (limits.ceiling + 4.0) / limits.step) as u16).saturating_add(30)
 }
 
 /// Whether all ground on the straight way to `place` is known.

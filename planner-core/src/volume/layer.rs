@@ -10,6 +10,11 @@ pub(crate) struct Layer<const TW: usize, const TH: usize, const L: usize>([[[u64
 impl<const TW: usize, const TH: usize, const L: usize> Layer<TW, TH, L> {
     pub(crate) const EMPTY: Self = Self([[[0; TW]; TH]; L]);
 
+    /// Clears all bits, in place.
+    pub(crate) fn reset(&mut self) {
+        self.0 = [[[0; TW]; TH]; L];
+    }
+
     /// The bits of a tile of a level; none outside.
     pub(crate) fn word(&self, tile: Tile, z: u8) -> u64 {
         self.0
@@ -29,6 +34,19 @@ impl<const TW: usize, const TH: usize, const L: usize> Layer<TW, TH, L> {
             .and_then(|row| row.get_mut(usize::from(tile.x)))
         {
             *word |= bits;
+        }
+    }
+
+    /// Clears the bit of `voxel`.
+    pub(crate) fn clear(&mut self, voxel: Voxel) {
+        if let (Some(tile), Ok(z)) = (Tile::of(voxel.cell()), u8::try_from(voxel.z))
+            && let Some(word) = self
+                .0
+                .get_mut(usize::from(z))
+                .and_then(|level| level.get_mut(usize::from(tile.y)))
+                .and_then(|row| row.get_mut(usize::from(tile.x)))
+        {
+            *word &= !(1 << Tile::bit(voxel.cell()));
         }
     }
 

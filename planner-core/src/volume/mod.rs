@@ -21,6 +21,7 @@ use crate::surface::{Tile, neighbours_of};
 /// One cube of a box. The unit is the cube's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Voxel {
     /// East.
     pub x: i16,
@@ -62,6 +63,12 @@ impl Voxel {
     /// Its column.
     pub const fn cell(self) -> Cell {
         Cell::new(self.x, self.y)
+    }
+}
+
+impl fmt::Display for Voxel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{},{},{}", self.x, self.y, self.z)
     }
 }
 
@@ -111,31 +118,61 @@ pub struct Volume<const TW: usize, const TH: usize, const L: usize> {
     known: Layer<TW, TH, L>,
     occupied: Layer<TW, TH, L>,
     known_voxels: u32,
+    frontiers: u32,
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
-    /// A box of `extent` columns and `levels` levels with nothing known.
-    ///
-    /// # Errors
-    /// The box is larger than the map.
-    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+    /// A box of nothing; a `static` of it costs no flash.
+    pub const fn vacant() -> Self {
         const {
             assert!(
                 TW <= MOST_TILES && TH <= MOST_TILES && L <= u8::MAX as usize,
                 "at most 64×64 tiles, 255 levels"
             )
         }
+        Self {
+            extent: Extent::new(0, 0),
+            levels: 0,
+            known: Layer::EMPTY,
+            occupied: Layer::EMPTY,
+            known_voxels: 0,
+            frontiers: 0,
+        }
+    }
+
+    /// A box of `extent` columns and `levels` levels with nothing known.
+    ///
+    /// # Errors
+    /// The box is larger than the map.
+    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+        let mut volume = Self::vacant();
+        match volume.fit(extent, levels) {
+            Ok(()) => Ok(volume),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Forgets all, in place, and is a box of this size from now on.
+    ///
+    /// # Errors
+    /// The box is larger than the map; it has not changed then.
+    pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
+        self.fit(extent, levels)?;
+        self.known.reset();
+        self.occupied.reset();
+        self.known_voxels = 0;
+        self.frontiers = 0;
+        Ok(())
+    }
+
+    const fn fit(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
         if extent.width as usize > 8 * TW || extent.height as usize > 8 * TH || levels as usize > L
         {
             return Err(DoesNotFit);
         }
-        Ok(Self {
-            extent,
-            levels,
-            known: Layer::EMPTY,
-            occupied: Layer::EMPTY,
-            known_voxels: 0,
-        })
+        self.extent = extent;
+        self.levels = levels;
+        Ok(())
     }
 
     /// Size on the ground plan.
@@ -151,6 +188,11 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// Number of known voxels.
     pub const fn known_voxels(&self) -> u32 {
         self.known_voxels
+    }
+
+    /// Number of frontiers: free voxels beside an unknown one.
+    pub const fn frontiers(&self) -> u32 {
+        self.frontiers
     }
 
     /// Whether `voxel` lies in the box.
@@ -196,16 +238,69 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     }
 
     /// Joins `patch` into the map; says whether anything was new. Voxels outside are
-    /// ignored. Cost: one tile of a level.
+    /// ignored. Cost: one tile of a level, and 98 words if anything is new.
     pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
         let VoxelPatch { tile, z, .. } = *patch;
         let inside = self.inside(tile, z);
         let known = (patch.known | patch.occupied) & inside & !self.known.word(tile, z);
         let occupied = patch.occupied & inside & !self.occupied.word(tile, z);
+        if known | occupied == 0 {
+            return false;
+        }
+        let before = self.frontiers_about(tile, z);
         self.known.add(tile, z, known);
         self.occupied.add(tile, z, occupied);
         self.known_voxels = self.known_voxels.saturating_add(known.count_ones());
-        known | occupied != 0
+        self.frontiers = self
+            .frontiers
+            .saturating_add(self.frontiers_about(tile, z))
+            .saturating_sub(before);
+        true
+    }
+
+    /// Number of frontiers in a tile of a level and the six beside it.
+    fn frontiers_about(&self, tile: Tile, z: u8) -> u32 {
+        let sides = around(tile).map(|tile| tile.map(|tile| (tile, z)));
+        let above = z.checked_add(1).map(|z| (tile, z));
+        let below = z.checked_sub(1).map(|z| (tile, z));
+        [Some((tile, z)), above, below]
+            .into_iter()
+            .chain(sides)
+            .flatten()
+            .map(|(tile, z)| self.frontier_voxels(tile, z).count_ones())
+            .sum()
+    }
+
+    /// The frontiers of a tile of a level. Cost: 14 words.
+    fn frontier_voxels(&self, tile: Tile, z: u8) -> u64 {
+        let is_beside = self.beside(tile, z, Self::unknown);
+        is_beside & self.free(tile, z)
+    }
+
+    /// The unknown voxels of a tile of a level that are beside a free one. Cost: 14 words.
+    pub(crate) fn unknown_beside_free(&self, tile: Tile, z: u8) -> u64 {
+        let unknown = self.unknown(tile, z);
+        if unknown == 0 {
+            return 0;
+        }
+        unknown & self.beside(tile, z, Self::free)
+    }
+
+    /// The voxels of a tile of a level that share a face with one of `layer`.
+    fn beside(&self, tile: Tile, z: u8, layer: impl Fn(&Self, Tile, u8) -> u64) -> u64 {
+        let at = |tile: Option<Tile>, z: Option<u8>| match (tile, z) {
+            (Some(tile), Some(z)) => layer(self, tile, z),
+            _ => 0,
+        };
+        let around = around(tile).map(|tile| at(tile, Some(z)));
+        let above = at(Some(tile), z.checked_add(1));
+        let below = at(Some(tile), z.checked_sub(1));
+        neighbours_of(layer(self, tile, z), around) | above | below
+    }
+
+    /// The free voxels of a tile of a level.
+    fn free(&self, tile: Tile, z: u8) -> u64 {
+        self.known.word(tile, z) & !self.occupied.word(tile, z)
     }
 
     /// Whether a robot may be at `voxel`: it is free, and so is every voxel that shares
@@ -217,17 +312,8 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// Those of a tile of a level. Cost: 14 words.
     pub(crate) fn poses(&self, tile: Tile, z: u8) -> u64 {
-        let bad = |tile: Option<Tile>, z: Option<u8>| match (tile, z) {
-            (Some(tile), Some(z)) => {
-                self.inside(tile, z) & !(self.known.word(tile, z) & !self.occupied.word(tile, z))
-            }
-            _ => 0,
-        };
-        let here = bad(Some(tile), Some(z));
-        let around = around(tile).map(|tile| bad(tile, Some(z)));
-        let above = bad(Some(tile), z.checked_add(1));
-        let below = bad(Some(tile), z.checked_sub(1));
-        self.inside(tile, z) & !(here | neighbours_of(here, around) | above | below)
+        let bad = |map: &Self, tile, z| map.inside(tile, z) & !map.free(tile, z);
+        self.inside(tile, z) & !(bad(self, tile, z) | self.beside(tile, z, bad))
     }
 
     /// The unknown voxels of a tile of a level.

@@ -35,6 +35,19 @@ proptest! {
         let known: std::collections::BTreeSet<_> =
             learnt.iter().map(|l| l.0).filter(|&v| map.contains(v)).collect();
         prop_assert_eq!(map.known_voxels() as usize, known.len());
+        let is_unknown = |voxel| map.content(voxel) == Content::Unknown;
+        let is_frontier = |voxel: &Voxel| {
+            map.content(*voxel) == Content::Free && voxel.beside().into_iter().any(is_unknown)
+        };
+        prop_assert_eq!(map.frontiers() as usize, known.iter().copied().filter(is_frontier).count());
+        for voxel in all().filter(|&voxel| map.contains(voxel)) {
+            let is_free = |voxel| map.contains(voxel) && map.content(voxel) == Content::Free;
+            let word = map.unknown_beside_free(Tile::of(voxel.cell()).unwrap(), voxel.z as u8);
+            prop_assert_eq!(
+                word >> Tile::bit(voxel.cell()) & 1 == 1,
+                is_unknown(voxel) && voxel.beside().into_iter().any(is_free)
+            );
+        }
     }
 
     /// Any order and any repetition of the same patches gives the same map.

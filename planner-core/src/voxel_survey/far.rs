@@ -28,13 +28,15 @@ enum Stage {
     Back(Voxel),
 }
 
-/// A wave from the robot over all poses. A pose's distance is kept modulo 3.
+/// A wave from the robot over all poses. A pose's distance is kept modulo 3, plus one, in
+/// two bits; 0 is dry.
 #[derive(Clone, Debug)]
 pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     stage: Stage,
-    layers: [Layer<TW, TH, L>; 3],
-    /// Number modulo 3 of the layer that is made.
-    layer: usize,
+    low: Layer<TW, TH, L>,
+    high: Layer<TW, TH, L>,
+    /// The distance modulo 3 of what becomes wet.
+    layer: u8,
     /// Where the look at all words for it stands.
     cursor: (Tile, u8),
     /// Whether anything has become wet in it.
@@ -46,11 +48,13 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
-    pub(super) const fn new() -> Self {
+    /// All zero, until [`reset`](Self::reset).
+    pub(super) const fn vacant() -> Self {
         Self {
             stage: Stage::Idle,
-            layers: [Layer::EMPTY, Layer::EMPTY, Layer::EMPTY],
-            layer: 1,
+            low: Layer::EMPTY,
+            high: Layer::EMPTY,
+            layer: 0,
             cursor: (Tile { x: 0, y: 0 }, 0),
             grows: false,
             passed: 0,
@@ -62,41 +66,60 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.stage == Stage::Idle
     }
 
+    /// Starts anew, in place.
+    pub(super) fn reset(&mut self) {
+        self.stage = Stage::Idle;
+        self.low.reset();
+        self.high.reset();
+        self.layer = 1;
+        self.cursor = (Tile { x: 0, y: 0 }, 0);
+        self.grows = false;
+        self.passed = 0;
+        self.spare = None;
+    }
+
     fn begin(&mut self, from: Voxel, known: u32) {
-        *self = Self::new();
+        self.reset();
         self.stage = Stage::Wave { known };
-        let [first, ..] = &mut self.layers;
-        first.set(from);
+        self.low.set(from);
     }
 
     /// Distance of `voxel` from the robot modulo 3, if it is wet.
-    fn distance(&self, voxel: Voxel) -> Option<usize> {
-        self.layers.iter().position(|layer| layer.get(voxel))
+    fn distance(&self, voxel: Voxel) -> Option<u8> {
+        let sum = u8::from(self.low.get(voxel)) | u8::from(self.high.get(voxel)) << 1;
+        sum.checked_sub(1)
     }
 
-    /// Lets the wave into the word at the cursor; gives what became wet.
-    fn wash(&mut self, volume: &Volume<TW, TH, L>) -> u64 {
-        let (tile, z) = self.cursor;
-        let wet = self
-            .layers
-            .iter()
-            .fold(0, |wet, layer| wet | layer.word(tile, z));
-        let Some(before) = self.layers.get((self.layer + 2) % 3) else {
-            return 0;
-        };
-        let sides = around(tile).map(|tile| tile.map_or(0, |tile| before.word(tile, z)));
-        let above = z.checked_add(1).map_or(0, |z| before.word(tile, z));
-        let below = z.checked_sub(1).map_or(0, |z| before.word(tile, z));
-        let reached = neighbours_of(before.word(tile, z), sides) | above | below;
-        if reached == 0 {
-            return 0;
+    /// What is wet of a tile of a level at `distance` modulo 3.
+    fn at(&self, distance: u8, tile: Tile, z: u8) -> u64 {
+        let (low, high) = (self.low.word(tile, z), self.high.word(tile, z));
+        match distance {
+            0 => low & !high,
+            1 => high & !low,
+            _ => low & high,
         }
-        let new = reached & !wet & volume.poses(tile, z);
-        if let Some(layer) = self.layers.get_mut(self.layer) {
-            layer.add(tile, z, new);
+    }
+
+    /// Lets the wave into the word at the cursor, but not into `closed` voxels.
+    fn wash(&mut self, volume: &Volume<TW, TH, L>, closed: &Layer<TW, TH, L>) {
+        let (tile, z) = self.cursor;
+        let wet = self.low.word(tile, z) | self.high.word(tile, z);
+        let before = |tile, z| self.at((self.layer + 2) % 3, tile, z);
+        let sides = around(tile).map(|tile| tile.map_or(0, |tile| before(tile, z)));
+        let above = z.checked_add(1).map_or(0, |z| before(tile, z));
+        let below = z.checked_sub(1).map_or(0, |z| before(tile, z));
+        let reached = neighbours_of(before(tile, z), sides) | above | below;
+        if reached == 0 {
+            return;
+        }
+        let new = reached & !wet & volume.poses(tile, z) & !closed.word(tile, z);
+        if self.layer != 1 {
+            self.low.add(tile, z, new);
+        }
+        if self.layer != 0 {
+            self.high.add(tile, z, new);
         }
         self.grows |= new != 0;
-        new
     }
 }
 
@@ -116,13 +139,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn spread(&mut self, known: u32) -> Found {
         while self.work < SLICE {
             self.work = self.work.saturating_add(1);
-            self.far.wash(&self.volume);
+            self.far.wash(&self.volume, &self.closed);
             let (tile, z) = self.far.cursor;
-            let wet = self
-                .far
-                .layers
-                .get(self.far.layer)
-                .map_or(0, |l| l.word(tile, z));
+            let wet = self.far.at(self.far.layer, tile, z);
             let open = wet & !self.done.word(tile, z) & !self.far.passed;
             if open != 0 {
                 // The cursor stays until all of them are done or passed.

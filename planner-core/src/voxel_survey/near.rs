@@ -141,7 +141,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                     continue;
                 }
                 self.work = self.work.saturating_add(1);
-                if self.volume.is_pose(at) {
+                if self.volume.is_pose(at) && !self.closed.get(at) {
                     // The nearest ones are kept.
                     let _ = places.push(Place {
                         at,

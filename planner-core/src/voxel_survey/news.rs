@@ -38,6 +38,15 @@ impl<const TW: usize, const TH: usize, const L: usize> News<TW, TH, L> {
         }
     }
 
+    /// Starts anew, in place.
+    pub(super) fn reset(&mut self) {
+        self.left = [[[0; TW]; TH]; L];
+        self.waiting = 0;
+        self.next = (Tile { x: 0, y: 0 }, 0);
+        self.turn = (Tile { x: 0, y: 0 }, 0);
+        self.since_turn = 0;
+    }
+
     /// Something of this piece was seen for the first time.
     pub(super) fn add(&mut self, tile: Tile, z: u8) {
         self.set(tile, z, TELLS);

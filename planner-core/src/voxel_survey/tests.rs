@@ -220,7 +220,7 @@ proptest! {
                     at = to;
                 }
                 Action::Hover => {}
-                Action::Stop => break,
+                Action::Stop(_) => break,
             }
         }
     }
@@ -311,7 +311,11 @@ proptest! {
                     at = to;
                 }
                 Action::Hover => {}
-                Action::Stop => break,
+                Action::Stop(stop) => {
+                    prop_assert!(stop.is_complete(), "{stop}");
+                    prop_assert_eq!(stop.left(), robot.volume().frontiers());
+                    break;
+                }
             }
             steps += 1;
             prop_assert!(steps < 20_000);
@@ -320,6 +324,312 @@ proptest! {
             prop_assert!(robot.volume().content(voxel) != crate::volume::Content::Unknown, "{voxel:?}");
         }
     }
+}
+
+/// A scene, and what is wrong with it.
+#[derive(Clone, Debug, Default)]
+struct World {
+    walls: BTreeSet<Voxel>,
+    /// Voxels that no step enters.
+    glass: BTreeSet<Voxel>,
+    /// Voxels that no look shows.
+    dark: BTreeSet<Voxel>,
+    silent_from: Option<u32>,
+}
+
+impl World {
+    fn look(&self, eye: Voxel, step: u32) -> Vec<(Voxel, bool)> {
+        if self.silent_from.is_some_and(|from| step >= from) {
+            return Vec::new();
+        }
+        let mut view = look(&self.walls, eye);
+        view.retain(|(voxel, _)| !self.dark.contains(voxel));
+        view
+    }
+
+    /// What is seen from any place that can be reached over voxels that let a robot in,
+    /// all of whose neighbours can be known.
+    fn visible(&self) -> BTreeSet<Voxel> {
+        let blocks = self
+            .walls
+            .union(&self.dark)
+            .copied()
+            .collect::<BTreeSet<_>>();
+        let is_pose = |voxel: Voxel| {
+            is_inside(voxel)
+                && !self.glass.contains(&voxel)
+                && !blocks.contains(&voxel)
+                && voxel.beside().iter().all(|beside| !blocks.contains(beside))
+        };
+        let mut reached = Vec::from([START]);
+        let mut next = 0;
+        while let Some(&at) = reached.get(next) {
+            next += 1;
+            for beside in at.beside() {
+                if is_pose(beside) && !reached.contains(&beside) {
+                    reached.push(beside);
+                }
+            }
+        }
+        let views = reached.iter().flat_map(|&eye| self.look(eye, 0));
+        views.map(|(voxel, _)| voxel).collect()
+    }
+
+    /// Flies from `at` until the robot stops.
+    fn fly(
+        &self,
+        robot: &mut Robot,
+        at: &mut Voxel,
+        script: &Script,
+        loud: u32,
+        most: u32,
+    ) -> (Stop<Voxel>, u32) {
+        for step in 0..most {
+            robot.observe(*at, &self.look(*at, step));
+            if step < loud && !script.is_empty() {
+                for &(id, status) in &script[step as usize % script.len()] {
+                    robot.hear(id, status);
+                }
+            }
+            match robot.tick() {
+                Action::Fly(to) => {
+                    assert_eq!(at.distance_squared(to), 1);
+                    assert!(!self.walls.contains(&to));
+                    if !self.glass.contains(&to) {
+                        *at = to;
+                    }
+                }
+                Action::Hover => {}
+                Action::Stop(stop) => {
+                    for _ in 0..3 {
+                        robot.observe(*at, &self.look(*at, step));
+                        assert_eq!(robot.tick(), Action::Stop(stop));
+                    }
+                    return (stop, step);
+                }
+            }
+        }
+        panic!("no stop: {self:?}");
+    }
+
+    fn is_true(&self, stop: Stop<Voxel>, robot: &Robot) {
+        let volume = robot.volume();
+        assert_eq!(stop.left(), volume.frontiers());
+        match stop {
+            Stop::Complete | Stop::OutOfReach { .. } => {
+                for voxel in self.visible() {
+                    assert!(volume.content(voxel) != Content::Unknown, "{voxel}");
+                }
+            }
+            Stop::Unseen { at, .. } => {
+                assert!(
+                    is_inside(at) && volume.content(at) == Content::Unknown,
+                    "{at}"
+                );
+            }
+            Stop::Blocked { at, .. } => assert!(self.glass.contains(&at), "{at}"),
+            other => panic!("{other}"),
+        }
+    }
+}
+
+/// What others say in the steps of the script, round and round.
+type Script = Vec<Vec<(u8, Status)>>;
+
+fn script() -> impl Strategy<Value = Script> {
+    let coordinate = || prop_oneof![9 => -2i16..14, 1 => any::<i16>()];
+    let voxel = move || {
+        (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| Voxel::new(x, y, z))
+    };
+    let status = (voxel(), prop::option::of(voxel()), any::<bool>()).prop_map(
+        |(position, goal, stopped)| Status {
+            position,
+            goal,
+            stopped,
+        },
+    );
+    prop::collection::vec(prop::collection::vec((1u8..20, status), 0..16), 0..8)
+}
+
+fn places(most: usize) -> impl Strategy<Value = BTreeSet<Voxel>> {
+    let voxel = (0i16..11, 0i16..10, 0i16..7).prop_map(|(x, y, z)| Voxel::new(x, y, z));
+    prop::collection::btree_set(voxel, 0..most)
+        .prop_map(|set| set.into_iter().filter(|&voxel| voxel != START).collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Glass, dark voxels, a sensor that fails, and others who say what they like, for
+    /// ever: the robot stops, the reason is true, and all else was seen before.
+    #[test]
+    fn every_survey_ends_in_a_true_reason(
+        (scattered, slabs) in walls(),
+        glass in prop_oneof![places(12), places(200)],
+        dark in places(6),
+        silent_from in prop::option::weighted(0.1, 0u32..200),
+        script in script(),
+        loud in prop_oneof![0u32..400, Just(u32::MAX)],
+    ) {
+        let walls = scene(&scattered, &slabs);
+        let dark: BTreeSet<_> = dark.into_iter().filter(|voxel| !START.beside().contains(voxel)).collect();
+        let world = World { walls, glass, dark, silent_from };
+        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut at = START;
+        let (stop, _) = world.fly(&mut robot, &mut at, &script, loud, 200_000);
+        world.is_true(stop, &robot);
+        if world.silent_from.is_none() {
+            for voxel in world.visible() {
+                prop_assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel} {stop}");
+            }
+        }
+    }
+
+    /// Bad poses, however many: no decision, nothing learnt; and then it goes on.
+    #[test]
+    fn nothing_is_decided_from_a_bad_pose(
+        begin in 0u32..60,
+        length in 1u32..200,
+        bad in prop::sample::select(std::vec![
+            Voxel::new(-1, 5, 4), Voxel::new(11, 5, 4), Voxel::new(5, 5, 7),
+            Voxel::new(i16::MAX, i16::MIN, 0), Voxel::new(4, 4, 0),
+        ]),
+    ) {
+        let world = World {
+            walls: all().filter(|voxel| voxel.z == 0).collect(),
+            ..World::default()
+        };
+        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut at = START;
+        for step in 0.. {
+            prop_assert!(step < 5_000);
+            if (begin..begin + length).contains(&step) && step > 0 {
+                let known = robot.volume().known_voxels();
+                robot.observe(bad, &world.look(Voxel::new(9, 9, 5), step));
+                if bad != Voxel::new(4, 4, 0) || robot.volume().content(bad) == Content::Occupied {
+                    prop_assert_eq!(robot.tick(), Action::Hover);
+                    prop_assert_eq!(robot.waiting(), Some(Wait::Pose));
+                    prop_assert_eq!(robot.volume().known_voxels(), known);
+                    continue;
+                }
+            }
+            robot.observe(at, &world.look(at, step));
+            match robot.tick() {
+                Action::Fly(to) => at = to,
+                Action::Hover => {}
+                Action::Stop(stop) => {
+                    prop_assert!(stop.is_complete(), "{stop}");
+                    break;
+                }
+            }
+        }
+    }
+}
+
+/// A pane of glass across the box: everything on this side is seen, then it is named; a
+/// gap in it is found; and when it is gone, the robot goes on.
+#[test]
+fn glass_is_named_and_gaps_are_found() {
+    let pane = || all().filter(|voxel| voxel.x == 6);
+    // Sight ends there too, so that there is something to fly for.
+    let curtain: BTreeSet<Voxel> = all()
+        .filter(|voxel| voxel.x == 9 && !(4..7).contains(&voxel.y))
+        .collect();
+    for gap in [None, Some(Voxel::new(6, 1, 1))] {
+        let mut world = World {
+            walls: curtain.clone(),
+            glass: pane().filter(|&voxel| Some(voxel) != gap).collect(),
+            ..World::default()
+        };
+        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut at = START;
+        let (stop, steps) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+        std::eprintln!("{stop} after {steps} steps");
+        for voxel in world.visible() {
+            assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel}");
+        }
+        if gap.is_none() {
+            assert!(
+                matches!(stop, Stop::Blocked { at, .. } if at.x == 6),
+                "{stop}"
+            );
+            world.glass.clear();
+            robot.resume();
+            let (stop, _) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+            assert!(stop.is_complete(), "{stop}");
+            for voxel in world.visible() {
+                assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel}");
+            }
+        } else {
+            assert!(stop.is_complete(), "{stop}");
+        }
+    }
+}
+
+/// A voxel that no look shows is named, and one that shows at last is seen after all.
+#[test]
+fn a_dark_voxel_is_named() {
+    let dark = Voxel::new(2, 7, 2);
+    let mut world = World {
+        dark: [dark].into(),
+        ..World::default()
+    };
+    let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    let mut at = START;
+    let (stop, _) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+    let frontiers = 6;
+    assert_eq!(
+        stop,
+        Stop::Unseen {
+            frontiers,
+            at: dark
+        }
+    );
+    world.dark.clear();
+    robot.resume();
+    let (stop, _) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+    assert_eq!(stop, Stop::Complete);
+}
+
+/// A sensor that fails ends the survey soon, and one that comes back goes on.
+#[test]
+fn a_silent_sensor_is_a_reason_to_stop() {
+    for from in [0, 7] {
+        let mut world = World {
+            silent_from: Some(from),
+            ..World::default()
+        };
+        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut at = START;
+        let (stop, steps) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+        assert!(
+            matches!(stop, Stop::Unseen { .. }) && steps < 120,
+            "{stop} {steps}"
+        );
+        world.is_true(stop, &robot);
+        world.silent_from = None;
+        let (stop, _) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
+        assert_eq!(stop, Stop::Complete);
+    }
+}
+
+/// A robot that was reset decides as a new one; one that cannot be is as it was.
+#[test]
+fn a_reset_robot_is_a_new_one() {
+    let world = World::default();
+    let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 3).unwrap();
+    world.fly(&mut robot, &mut START.clone(), &Vec::new(), 0, 20_000);
+    let before = std::format!("{robot:?}");
+    assert_eq!(
+        robot.reset(Extent::new(17, 3), LEVELS, CONFIG, 1),
+        Err(DoesNotFit)
+    );
+    assert_eq!(std::format!("{robot:?}"), before);
+    robot.reset(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    let new = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    // Why it stopped last is remembered, and means nothing.
+    robot.reason = new.reason;
+    assert_eq!(std::format!("{robot:?}"), std::format!("{new:?}"));
 }
 
 /// Whole state for 40×40×16 voxels.

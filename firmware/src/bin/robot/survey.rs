@@ -111,6 +111,7 @@ fn obey(
             let knowledge = planner.knowledge();
             let decided = SurveyReply::Decided {
                 action,
+                waiting: planner.waiting(),
                 work: planner.work(),
                 gain: knowledge.gain(),
                 reward: knowledge.reward(),
@@ -118,6 +119,7 @@ fn obey(
             };
             (decided, cost)
         }
+        SurveyRequest::Resume => done(stopwatch.measure(|| planner.resume())),
         SurveyRequest::Report(motion, at) => done(stopwatch.measure(|| planner.report(motion, at))),
         SurveyRequest::Transmit => {
             let mut frame = [0; MAX_LEN];

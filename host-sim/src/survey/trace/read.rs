@@ -4,8 +4,8 @@
 use std::io::BufRead;
 
 use planner_core::surface::Height;
-use planner_core::survey::{Limits, MAX_RANGE, Stop};
-use planner_core::{Cell, Extent, Point};
+use planner_core::survey::{Limits, MAX_RANGE};
+use planner_core::{Cell, Extent, Point, Stop};
 use serde::Deserialize;
 
 use super::{Deed, KIND, Record, Trace, digest};
@@ -32,6 +32,9 @@ struct Header {
     starts: Vec<[f32; 3]>,
     /// (robot, step)
     deaths: Vec<(usize, u32)>,
+    /// Of each robot at the end; older traces have none.
+    #[serde(default)]
+    stops: Vec<Option<Stop>>,
     world: Heights,
 }
 
@@ -51,7 +54,8 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (header, records) = KIND.read::<Header, _>(from, parse_record, digest)?;
+        let (mut header, mut records) = KIND.read::<Header, _>(from, parse_record, digest)?;
+        complete_stops(&mut records, &std::mem::take(&mut header.stops));
         let mut replay = Replay::new(header)?;
         let robots = replay.at.len();
         if let Some(record) = records.iter().find(|it| usize::from(it.robot) >= robots) {
@@ -64,6 +68,26 @@ impl Trace {
         let mut trace = replay.finish(records.last().map_or(0, |last| last.tick + 1));
         trace.records = records;
         Ok(trace)
+    }
+}
+
+/// A record has only the number of a reason; the header has what each robot's last one
+/// names.
+fn complete_stops(records: &mut [Record], stops: &[Option<Stop>]) {
+    for (robot, stop) in (0u8..).zip(stops) {
+        let mut last = records
+            .iter_mut()
+            .rev()
+            .filter(|record| record.robot == robot);
+        if let (Some(stop), Some(last)) = (stop, last.next()) {
+            let whole = Record {
+                deed: Deed::Stopped(*stop),
+                ..*last
+            };
+            if whole.action() == last.action() {
+                *last = whole;
+            }
+        }
     }
 }
 
@@ -214,10 +238,7 @@ fn parse_record(line: &str) -> Option<Record> {
         "0" => Deed::Flew,
         "1" => Deed::Refused,
         "2" => Deed::Hovered,
-        "32" => Deed::Stopped(Stop::Complete),
-        // How many were left is not in the file.
-        "33" => Deed::Stopped(Stop::Unseen { frontiers: 0 }),
-        _ => return None,
+        number => Deed::Stopped(stop_of(number, at.cell())?),
     };
     let target = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
     let record = Record {
@@ -237,10 +258,79 @@ fn parse_record(line: &str) -> Option<Record> {
     next().is_none().then_some(record)
 }
 
+/// The reason with this number. How many frontiers were left, and where, is not in a
+/// record.
+fn stop_of(number: &str, at: Cell) -> Option<Stop> {
+    let frontiers = 0;
+    Some(match number {
+        "32" => Stop::Complete,
+        "33" => Stop::Unseen { frontiers, at },
+        "34" => Stop::Blocked { frontiers, at },
+        "37" => Stop::AtEdge { cells: 0 },
+        "38" => Stop::OutOfReach { frontiers },
+        "39" => Stop::Enclosed { frontiers },
+        "40" => Stop::Held { frontiers, at },
+        _ => return None,
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::survey::run;
+
+    /// Every reason has one number, and keeps it.
+    #[test]
+    fn a_stop_is_read_as_it_was_written() {
+        let (frontiers, at) = (0, Cell::new(3, 4));
+        for stop in [
+            Stop::Complete,
+            Stop::Unseen { frontiers, at },
+            Stop::Blocked { frontiers, at },
+            Stop::AtEdge { cells: 0 },
+            Stop::OutOfReach { frontiers },
+            Stop::Enclosed { frontiers },
+            Stop::Held { frontiers, at },
+        ] {
+            let record = Record {
+                tick: 0,
+                robot: 0,
+                at: Point::over(at, 5.0),
+                deed: Deed::Stopped(stop),
+                target: None,
+                gain: 0.0,
+                known: 0,
+                work: 0,
+                sent: Sent::default(),
+            };
+            let number = record.action().to_string();
+            assert_eq!(stop_of(&number, at), Some(stop), "{number}");
+        }
+    }
+
+    /// What a stop names is in the header, and comes back from there.
+    #[test]
+    fn a_stop_keeps_what_it_names() {
+        let mut trace = trace(Planner::Fcao);
+        let stop = Stop::Blocked {
+            frontiers: 7,
+            at: Cell::new(2, 3),
+        };
+        for record in trace.records.iter_mut().rev().take(3) {
+            record.deed = Deed::Stopped(stop);
+        }
+        let read = Trace::read(text(&trace).as_bytes()).unwrap();
+        for robot in 0..3 {
+            assert_eq!(read.stop(robot), trace.stop(robot));
+        }
+        assert_eq!(text(&read), text(&trace));
+        // As older traces are.
+        let start = text(&trace).find("\"stops\"").unwrap();
+        let end = start + text(&trace)[start..].find("]").unwrap() + 2;
+        let old = text(&trace).replacen(&text(&trace)[start..end], "", 1);
+        let read = Trace::read(old.as_bytes()).unwrap();
+        assert_eq!(read.digest(), trace.digest());
+    }
 
     /// A run in which robots die and sleep, and messages are lost.
     fn trace(planner: Planner) -> Trace {

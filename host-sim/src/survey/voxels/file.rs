@@ -2,7 +2,7 @@
 //!
 //! A trace file is text. Line 1 is a JSON object, the *header*: the scenario, the scene
 //! as rows of `#` occupied and `.` free, level by level from below, whether every robot
-//! had stopped, the number of records and their digest. Line 2 names the columns; every
+//! had stopped and why each had, the number of records and their digest. Line 2 names the columns; every
 //! further line is one record: where a robot decided, and the work of that.
 //!
 //! The digest is the first 16 hex digits of the SHA-256 of the file without its header.
@@ -11,9 +11,9 @@ use std::collections::HashSet;
 use std::fmt::{self, Write as _};
 use std::io::{self, BufRead};
 
-use planner_core::Extent;
 use planner_core::volume::Voxel;
 use planner_core::voxel_survey::MAX_RANGE;
+use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -36,6 +36,9 @@ struct Header {
     records: usize,
     scenario: Scenario,
     all_stopped: bool,
+    /// Of each robot at the end; older traces have none.
+    #[serde(default)]
+    stops: Vec<Option<Stop<Voxel>>>,
     world: Levels,
 }
 
@@ -74,6 +77,7 @@ impl VoxelTrace {
             records: self.work.len(),
             scenario: self.scenario.clone(),
             all_stopped: self.all_stopped,
+            stops: self.stops.clone(),
             world: Levels::of(&self.scene),
         };
         serde_json::to_writer(&mut to, &header)?;
@@ -119,6 +123,11 @@ impl VoxelTrace {
             visible: 0,
             seen: Vec::new(),
             all_stopped: header.all_stopped,
+            stops: {
+                let mut stops = header.stops;
+                stops.resize(robots, None);
+                stops
+            },
             violations: 0,
             scenario,
             scene,
@@ -288,6 +297,9 @@ mod tests {
             assert_eq!(read.ways, trace.ways);
             assert_eq!(read.found, trace.found);
             assert_eq!(read.seen, trace.seen);
+            assert_eq!(read.stops, trace.stops);
+            let has_stopped = trace.stops.iter().all(Option::is_some);
+            assert_eq!(has_stopped, trace.all_stopped);
             assert_eq!(
                 (read.visible, read.violations, read.all_stopped),
                 (trace.visible, 0, max_ticks > 60)

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeSet, HashSet};
 
-use planner_core::Point;
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
+use planner_core::{Point, Stop};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -79,6 +79,8 @@ pub struct VoxelTrace {
     pub seen: Vec<u32>,
     /// Whether every robot had stopped.
     pub all_stopped: bool,
+    /// Why each robot had stopped at the end, if it had.
+    pub stops: Vec<Option<Stop<Voxel>>>,
     /// Flights into or beside something, or longer than a voxel.
     pub violations: u32,
 }
@@ -172,6 +174,7 @@ impl Simulation {
             visible: visible.len() as u32,
             seen: Vec::new(),
             all_stopped: false,
+            stops: vec![None; scenario.robots],
             violations: 0,
         };
         Ok(Self {
@@ -243,11 +246,13 @@ impl Simulation {
             let at = *trace.ways[i].last().expect("as above");
             let action = robots[i].tick();
             trace.work.push(robots[i].work());
-            going |= action != Action::Stop;
-            let to = match action {
-                Action::Fly(to) => to,
-                Action::Hover | Action::Stop => at,
+            let (to, stop) = match action {
+                Action::Fly(to) => (to, None),
+                Action::Hover => (at, None),
+                Action::Stop(stop) => (at, Some(stop)),
             };
+            going |= stop.is_none();
+            trace.stops[i] = stop;
             let is_allowed = scene.is_pose(to) && at.distance_squared(to) <= 1;
             trace.violations += u32::from(!is_allowed);
             next.push(to);

@@ -30,6 +30,8 @@ pub(super) struct Way<const TW: usize, const TH: usize> {
     /// Whether anything has become wet in it.
     grows: bool,
     is_done: bool,
+    /// Whether closed columns kept it from spreading.
+    is_cut: bool,
 }
 
 impl<const TW: usize, const TH: usize> Way<TW, TH> {
@@ -41,6 +43,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
             cursor: Tile { x: 0, y: 0 },
             grows: false,
             is_done: false,
+            is_cut: false,
         }
     }
 
@@ -52,6 +55,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         self.cursor = Tile { x: 0, y: 0 };
         self.grows = false;
         self.is_done = false;
+        self.is_cut = false;
         let [first, ..] = &mut self.layers;
         if let Some(cell) = target
             && let Some(word) = word_of(first, cell)
@@ -60,10 +64,26 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         }
     }
 
-    /// The column to fly to from the robot's.
+    /// Whether closed columns have kept the wave from something.
+    pub(super) const fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+
+    /// The columns that the wave has wet, tile by tile.
+    pub(super) fn wet(&self) -> impl Iterator<Item = u64> + '_ {
+        let [a, b, c] = &self.layers;
+        let words = a.iter().flatten().zip(b.iter().flatten());
+        words.zip(c.iter().flatten()).map(|((a, b), c)| a | b | c)
+    }
+
+    /// The column to fly to from the robot's; the wave does not enter `closed` columns.
     ///
     /// Cost: 1024 tiles.
-    pub(super) fn next(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Next {
+    pub(super) fn next(
+        &mut self,
+        knowledge: &mut Knowledge<TW, TH>,
+        closed: &[[u64; TW]; TH],
+    ) -> Next {
         let here = knowledge.position().cell();
         for _ in 0..SLICE {
             if self.distance(here).is_some() {
@@ -72,7 +92,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
             if self.is_done {
                 return Next::None;
             }
-            self.wash(knowledge.surface());
+            self.wash(knowledge.surface(), closed);
             knowledge.look_at(1);
         }
         let Some(distance) = self.distance(here) else {
@@ -94,7 +114,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
     }
 
     /// Lets the wave into the next tile.
-    fn wash(&mut self, surface: &Surface<TW, TH>) {
+    fn wash(&mut self, surface: &Surface<TW, TH>, closed: &[[u64; TW]; TH]) {
         let tile = self.cursor;
         let before = (self.layer + 2) % 3;
         let wet = self
@@ -113,6 +133,9 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         ];
         let here = from(Some(tile.x), Some(tile.y));
         let new = neighbours_of(here, around) & surface.known(tile) & !wet;
+        let shut = new & word(closed, tile);
+        self.is_cut |= shut != 0;
+        let new = new & !shut;
         if let Some(layer) = self.layers.get_mut(self.layer)
             && let Some(word) = word_of(layer, tile.cell(0))
         {

@@ -7,6 +7,7 @@
 //! [`Row`] as each one ends; a [`Journal`] keeps the rows of interrupted and of
 //! shared work; [`compare`] pairs planners with a reference.
 
+pub mod ghosts;
 mod execute;
 pub mod figures;
 mod journal;

@@ -25,6 +25,7 @@ mod maybe;
 mod others;
 mod patch;
 mod path;
+mod purse;
 mod role;
 mod surroundings;
 mod wave;
@@ -265,7 +266,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn decide_near(&mut self) -> Near {
         let (now, id) = (self.around.now, self.id);
         self.role.since = 0;
-        let knows_all = self.others.exploring().all(|other| other.is_fresh(now));
+        let knows_all = self.others.are_all_fresh(now);
         let aim = Aim {
             goal: self.last_goal,
             hysteresis: self.config.hysteresis,
@@ -371,6 +372,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.role.plan = None;
         }
         let learnt = self.around.map.observe(sighting);
+        self.others.purse.saw(learnt.cells);
         self.around.map.visit(self.around.position);
         self.link.announce(&mut self.around.map);
         self.learn(learnt)
@@ -392,6 +394,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             return Action::Wait;
         }
         self.others.forget(self.around.now, self.config.memory);
+        if self.others.pay(&self.around.map) {
+            // It was made of hints.
+            self.far.cancel();
+        }
         let plan = self.valid_plan();
         if plan.is_none_or(|plan| !plan.path.is_empty() && self.next_step().is_none()) {
             self.role.plan = None;

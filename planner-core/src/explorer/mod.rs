@@ -45,7 +45,7 @@ use window::{Aim, Candidate, NearSearch};
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
 use crate::planner::Planner;
-use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop};
 use crate::sight::Sighting;
 
@@ -373,6 +373,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         let learnt = self.around.map.observe(sighting);
         self.others.purse.saw(learnt.cells);
+        self.link.look(sighting);
         self.around.map.visit(self.around.position);
         self.link.announce(&mut self.around.map);
         self.learn(learnt)
@@ -501,12 +502,17 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         Ok(heard)
     }
 
+    fn hearsay(&self) -> Hearsay {
+        self.link.hearsay()
+    }
+
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.around.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
         let learnt = self.around.map.join_tiles(other, tiles);
+        self.link.joined(learnt);
         self.learn(learnt)
     }
 

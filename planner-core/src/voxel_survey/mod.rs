@@ -36,7 +36,7 @@ mod news;
 use heapless::Vec;
 
 use crate::cell::Extent;
-use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, VoxelFrame};
+use crate::radio::{FrameError, Hearsay, GridId, LinkConfig, MAX_LEN, VoxelFrame};
 use crate::robot::RobotId;
 use crate::surface::Tile;
 use crate::survey::{Peer, Peers, Sender};
@@ -217,21 +217,20 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         };
         self.news.tell(&self.volume, &mut frame);
         let length = frame.encode(self.sender.key(), buffer);
-        self.sender.sent(length);
+        self.sender.sent(buffer.get(..length).unwrap_or(&[]));
         Some(length)
     }
 
     /// Takes in another robot's frame; gives the number of voxels that it brought.
     ///
     /// # Errors
-    /// See [`FrameError`]; nothing has changed then.
+    /// See [`FrameError`]; nothing but [`hearsay`](Self::hearsay) has changed then.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
-        let Sender { grid, id, .. } = self.sender;
+        let grid = self.sender.grid;
         let (extent, levels) = (self.volume.extent(), self.volume.levels());
-        let frame = VoxelFrame::decode(bytes, self.sender.key(), grid, extent, levels)?;
-        if frame.sender == id {
-            return Err(FrameError::Own);
-        }
+        let read = VoxelFrame::decode(bytes, self.sender.key(), grid, extent, levels);
+        let sender = |frame: &VoxelFrame| (frame.sender, frame.sequence);
+        let frame = self.sender.admit(bytes, read, sender)?;
         let before = self.volume.known_voxels();
         for patch in &frame.patches {
             self.volume.merge(patch);
@@ -241,12 +240,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.peers
             .hear_frame(frame.sender.0, frame.status, frame.sequence);
-        Ok(self.volume.known_voxels() - before)
+        let learnt = self.volume.known_voxels() - before;
+        self.sender.hearsay.told(learnt);
+        Ok(learnt)
     }
 
     /// Takes in a piece of another robot's map; says whether it brought anything.
     pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
-        self.volume.merge(patch)
+        let before = self.volume.known_voxels();
+        let brought = self.volume.merge(patch);
+        self.sender
+            .hearsay
+            .told(self.volume.known_voxels() - before);
+        brought
+    }
+
+    /// How many voxels of the map others told first, and what was refused.
+    /// Contradictions are not counted over voxels.
+    pub const fn hearsay(&self) -> Hearsay {
+        self.sender.hearsay
     }
 
     /// Decides. Call it once per step.

@@ -122,7 +122,7 @@ fn an_echo_is_told_from_a_robot_of_the_same_id() {
         assert_eq!(robot.receive(&other, &mut map()), same_id);
     }
     assert_eq!(twin.hearsay().same_id, 21);
-    assert!(same_id.unwrap_err().to_string().contains("id 1"));
+    assert!(std::format!("{}", FrameError::SameId(RobotId(1))).contains("id 1"));
 }
 
 #[test]

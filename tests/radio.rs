@@ -47,6 +47,7 @@ fn air() -> impl Strategy<Value = AirFaults> {
                 duplication,
                 delay,
                 corruption,
+                forger: None,
             },
         )
 }

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use planner_core::map::{ExtentError, TileIndex};
-use planner_core::radio::{FrameError, Heard, LinkConfig, TileRecord};
+use planner_core::radio::{FrameError, Heard, Hearsay, LinkConfig, TileRecord};
 use planner_core::survey::SetupError;
 use planner_core::{
     Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, Wait, explorer,
@@ -128,6 +128,8 @@ pub struct State {
     pub role: Option<explorer::Role>,
     /// Why it waits.
     pub waiting: Option<Wait>,
+    /// What it has from others.
+    pub hearsay: Hearsay,
 }
 
 /// What a call returned.

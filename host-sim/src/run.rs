@@ -5,7 +5,7 @@ mod stepping;
 
 use std::sync::Arc;
 
-use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::radio::{Hearsay, Key, LinkConfig, MAX_LEN};
 use planner_core::{Cell, Extent, Planner, Stop, sight};
 use thiserror::Error;
 
@@ -42,6 +42,8 @@ pub struct Scenario {
     pub loss: f64,
     /// What else goes wrong in the air.
     pub air: AirFaults,
+    /// The fleet's secret, with which frames are signed.
+    pub key: Option<Key>,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell holds at most one robot.
@@ -69,6 +71,9 @@ pub enum ScenarioError {
         /// How much.
         share: f64,
     },
+    /// See the message.
+    #[error("a {0} only works on frames: the medium must be radio")]
+    NoFrames(&'static str),
     /// See the message.
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start {
@@ -105,6 +110,7 @@ impl Scenario {
             byte_budget: MAX_LEN as u16,
             loss: 0.0,
             air: AirFaults::default(),
+            key: None,
             seed: 0,
             solid: false,
             max_ticks,
@@ -132,6 +138,15 @@ impl Scenario {
             if !(0.0..=1.0).contains(&share) {
                 return Err(ScenarioError::Share { name, share });
             }
+        }
+        let of_frames = [
+            ("key", self.key.is_some()),
+            ("forger", self.air.forger.is_some()),
+        ];
+        if let Some((name, _)) = of_frames.iter().find(|(_, is_given)| *is_given)
+            && self.medium != MediumKind::Radio
+        {
+            return Err(ScenarioError::NoFrames(name));
         }
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
@@ -213,6 +228,8 @@ pub struct RobotOutcome {
     pub stop: Option<Stop>,
     /// Whether it lived to the end of the run.
     pub alive: bool,
+    /// What it had from others, and what spoke against them.
+    pub hearsay: Hearsay,
 }
 
 /// The costs of assignments by both criteria of \[Bautin2011\]. The robots that get
@@ -405,6 +422,7 @@ fn fleet_on<const TW: usize, const TH: usize>(
     };
     let link = LinkConfig {
         bytes_per_tick: scenario.byte_budget,
+        key: scenario.key,
         ..LinkConfig::new()
     };
     let (host, kind) = (host.clone(), scenario.planner);

@@ -1,5 +1,6 @@
 //! A run in one JSON object.
 
+use planner_core::radio::Hearsay;
 use serde::Serialize;
 
 use crate::measured::Measured;
@@ -53,6 +54,8 @@ pub struct Summary {
     pub loss: f64,
     /// What else went wrong in the air.
     pub air: AirFaults,
+    /// Whether frames were signed.
+    pub keyed: bool,
     /// Seed of all chance in the run.
     pub seed: u64,
     /// Whether a cell held at most one robot.
@@ -92,6 +95,8 @@ pub struct RobotSummary {
     pub stop_reason: Option<String>,
     /// Whether it lived to the end of the run.
     pub alive: bool,
+    /// What it had from others, and what spoke against them.
+    pub hearsay: Hearsay,
 }
 
 impl Summary {
@@ -121,6 +126,7 @@ impl Summary {
             byte_budget: scenario.byte_budget,
             loss: scenario.loss,
             air: scenario.air.clone(),
+            keyed: scenario.key.is_some(),
             seed: scenario.seed,
             solid: scenario.solid,
             robots: scenario
@@ -149,6 +155,7 @@ impl RobotSummary {
             stop: robot.stop.map(|stop| stop.name()),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             alive: robot.alive,
+            hearsay: robot.hearsay,
         }
     }
 }

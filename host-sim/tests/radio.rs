@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
+use host_sim::experiments::ghosts::{Attack, one_robot, sensor, three_robots};
 use host_sim::fleet::{Arrival, Faults, Restart};
-use host_sim::medium::{MediumKind, Reach};
+use host_sim::medium::{Forger, Forgery, MediumKind, Reach};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Scenario, run};
+use host_sim::run::{Options, RobotOutcome, Scenario, run};
 use host_sim::summary::Summary;
 use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, generate};
 use planner_core::RobotId;
+use planner_core::radio::Key;
 
 fn scenario(robots: usize) -> Scenario {
     let world = Arc::new(generate(Family::Rooms, 40, 40, 3).unwrap());
@@ -141,5 +143,81 @@ fn late_robots_and_restarted_ones_learn_by_radio_what_they_missed() {
     assert!(summary.complete && summary.ticks > 150);
     for robot in &summary.robots {
         assert_eq!(robot.cells_missed, 0);
+    }
+}
+
+/// Small worlds and everything that a forger does, with and without a key.
+fn forged() -> impl Iterator<Item = Scenario> {
+    let kinds = Forgery::HINTS.into_iter().chain([Forgery::Any]);
+    kinds.zip(Family::ALL).flat_map(|(kind, family)| {
+        let world = Arc::new(generate(family, 24, 24, 5).unwrap());
+        let starts = world.place(3, &Starts::Random(5), false).unwrap();
+        [None, Some(Key([9; 16]))].map(|key| {
+            let mut scenario = Scenario::new(world.clone(), starts.clone(), PlannerKind::Explorer);
+            scenario.medium = MediumKind::Radio;
+            scenario.loss = 0.2;
+            scenario.key = key;
+            scenario.air.forger = Some(Forger { frames: 3, kind });
+            scenario
+        })
+    })
+}
+
+fn digest(scenario: &Scenario) -> String {
+    let options = Options {
+        trace: true,
+        ..Options::default()
+    };
+    run(scenario, options).unwrap().1.unwrap().digest()
+}
+
+#[test]
+fn a_forger_without_the_key_changes_nothing() {
+    for mut scenario in forged().filter(|scenario| scenario.key.is_some()) {
+        let among_forgers = digest(&scenario);
+        let forger = scenario.air.forger.take();
+        assert_eq!(digest(&scenario), among_forgers, "{forger:?}");
+    }
+}
+
+#[test]
+fn without_a_key_every_robot_stops_and_hints_leave_nothing_out() {
+    for scenario in forged().filter(|scenario| scenario.key.is_none()) {
+        let outcome = run(&scenario, Options::default()).unwrap().0;
+        let forger = scenario.air.forger.unwrap();
+        assert!(outcome.violations.is_empty());
+        assert!(
+            outcome.robots.iter().all(|robot| robot.stop.is_some()),
+            "{forger:?}"
+        );
+        if forger.kind != Forgery::Any {
+            assert!(outcome.is_complete(), "{forger:?}");
+            let missed = |robot: &RobotOutcome| robot.cells_missed;
+            assert!(
+                outcome.robots.iter().all(|robot| missed(robot) == 0),
+                "{forger:?}"
+            );
+        }
+    }
+}
+
+/// A smaller `cargo run --release -p host-sim --example ghosts`.
+#[test]
+fn what_hints_cost_is_bounded() {
+    for attack in Attack::all() {
+        let mut ratios = Vec::new();
+        for family in Family::ALL {
+            let world = Arc::new(generate(family, 40, 40, 3).unwrap());
+            let sensor = sensor(&world);
+            let alone = one_robot(&world, &sensor).unwrap().unwrap();
+            let three = three_robots(&world, &sensor, Some(attack))
+                .unwrap()
+                .unwrap();
+            let ratio = f64::from(three) / f64::from(alone);
+            assert!(ratio <= 1.3, "{attack} in {family}: {ratio}");
+            ratios.push(ratio);
+        }
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        assert!(mean <= 1.1, "{attack}: {mean}");
     }
 }

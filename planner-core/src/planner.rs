@@ -2,7 +2,7 @@
 
 use crate::explorer::Role;
 use crate::map::{Learnt, Map, TileIndex, TileSet};
-use crate::radio::{FrameError, Heard, MAX_LEN};
+use crate::radio::{FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::sight::Sighting;
 
@@ -41,8 +41,15 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in a frame of another robot, at any time.
     ///
     /// # Errors
-    /// The frame says nothing to this robot; nothing has changed then.
+    /// The frame says nothing to this robot; nothing but [`hearsay`](Self::hearsay) has
+    /// changed then.
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError>;
+
+    /// How much of the map is from others, and what speaks against them. All zero where
+    /// a planner does not count.
+    fn hearsay(&self) -> Hearsay {
+        Hearsay::default()
+    }
 
     /// What the robot knows.
     fn map(&self) -> &Map<TW, TH>;

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
 use planner_core::explorer::Role;
 use planner_core::map::{Tile, TileIndex};
-use planner_core::radio::{Frame, FrameError, GridId, Heard, MAX_LEN, TileRecord};
+use planner_core::radio::{Frame, FrameError, GridId, Heard, Hearsay, MAX_LEN, TileRecord};
 use planner_core::{
     Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
 };
@@ -66,6 +66,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
                 },
                 role: None,
                 waiting: None,
+                hearsay: Hearsay::default(),
             },
         };
         match chip.and_then(|chip| proxy.start(chip, kind, setup)) {
@@ -240,6 +241,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
 
     fn status(&self) -> Status {
         self.state.status
+    }
+
+    fn hearsay(&self) -> Hearsay {
+        self.state.hearsay
     }
 
     fn take_changed(&mut self) -> TileSet<TH> {

@@ -17,7 +17,7 @@ use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Cell;
-use planner_core::radio::MAX_LEN;
+use planner_core::radio::{Key, MAX_LEN};
 
 use super::Done;
 use super::faults::FaultArgs;
@@ -54,6 +54,10 @@ pub(crate) struct Explore {
     /// frame: one every few ticks.
     #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
     byte_budget: u16,
+    /// Sign frames, and take signed ones only: the fleet's secret as 32 hex digits, or a
+    /// file that holds them.
+    #[arg(long, value_name = "HEX|FILE", value_parser = super::key::parse)]
+    key: Option<Key>,
     /// Seed of all chance in the run.
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
@@ -174,6 +178,12 @@ impl Explore {
         Ok(ExitCode::from(1))
     }
 
+    /// Whether frames are to be signed.
+    #[cfg(unix)]
+    pub(super) const fn has_key(&self) -> bool {
+        self.key.is_some()
+    }
+
     fn read_options(&self) -> ReadOptions {
         let scale = match (self.pixels_per_cell, self.cell_size) {
             (Some(pixels), _) => Scale::Pixels(pixels),
@@ -197,6 +207,7 @@ impl Explore {
         scenario.faults = self.faults.of_robots(self.robots.into())?;
         scenario.medium = self.medium;
         scenario.byte_budget = self.byte_budget;
+        scenario.key = self.key;
         scenario.seed = self.seed;
         scenario.solid = self.solid;
         scenario.max_ticks = self.max_ticks.unwrap_or(scenario.max_ticks);

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use host_sim::fleet::{Arrival, Death, Faults, Restart};
-use host_sim::medium::{AirFaults, Partition, Reach};
+use host_sim::medium::{AirFaults, Forger, Partition, Reach};
 use planner_core::RobotId;
 
 use super::explore::parse_share;
@@ -29,6 +29,11 @@ pub(super) struct FaultArgs {
     /// Radio frames arrive up to this many ticks late, and overtake each other.
     #[arg(long, value_name = "TICKS", default_value_t = 0, value_parser = clap::value_parser!(u32).range(..=10_000))]
     delay: u32,
+    /// N or N:KIND: somebody without the key lets every robot hear N forged frames a
+    /// tick. KIND: any (robots and tiles, all drawn), or about robots only: hints,
+    /// own-cell, around, goal, jump, stolen, crowd.
+    #[arg(long, value_name = "N:KIND")]
+    forge: Option<Forger>,
     /// FROM-UNTIL:N: in the ticks from FROM until before UNTIL, robots 0 to N-1 and
     /// the others do not hear each other. May be given again.
     #[arg(long, value_name = "FROM-UNTIL:N", value_parser = parse_partition)]
@@ -53,6 +58,7 @@ impl FaultArgs {
             duplication: self.duplicate,
             delay: self.delay,
             corruption: self.corrupt,
+            forger: self.forge,
         }
     }
 

@@ -21,6 +21,11 @@ pub(crate) struct Firmware {
 
 impl Firmware {
     pub(crate) fn run(self) -> Done {
+        if self.explore.has_key() {
+            return Err(
+                "--key: the image is built without keys; explore, and robot, sign frames".into(),
+            );
+        }
         let image = self.image.unwrap_or_else(|| self.machine.image());
         let swarm = Swarm::new(self.machine, image);
         let host = swarm.clone();

@@ -11,7 +11,7 @@ use host_sim::live::{self, RobotOptions, Server, WorldOptions};
 use host_sim::planners::PlannerKind;
 use host_sim::run::default_max_ticks;
 use host_sim::world::{self, ReadOptions};
-use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 
 use super::Done;
 
@@ -64,6 +64,10 @@ pub(crate) struct Robot {
     /// Bytes that it may send in a tick on average.
     #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
     byte_budget: u16,
+    /// Sign frames, and take signed ones only: the fleet's secret as 32 hex digits, or a
+    /// file that holds them.
+    #[arg(long, value_name = "HEX|FILE", value_parser = super::key::parse)]
+    key: Option<Key>,
 }
 
 impl World {
@@ -113,6 +117,7 @@ impl Robot {
             peers,
             link: LinkConfig {
                 bytes_per_tick: self.byte_budget,
+                key: self.key,
                 ..LinkConfig::new()
             },
         })?;

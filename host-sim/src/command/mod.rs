@@ -8,6 +8,7 @@ mod figures;
 mod firmware;
 mod folder;
 mod generate;
+mod key;
 mod live;
 mod report;
 mod survey;

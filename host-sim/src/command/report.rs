@@ -4,6 +4,7 @@ use std::path::Path;
 
 use host_sim::measured::Measured;
 use host_sim::summary::{RobotSummary, Summary};
+use planner_core::radio::Hearsay;
 
 /// Prints the summary on standard output.
 pub(super) fn print(summary: &Summary, out: &Path) {
@@ -37,13 +38,19 @@ pub(super) fn print(summary: &Summary, out: &Path) {
     );
     for (number, robot) in summary.robots.iter().enumerate() {
         println!(
-            "  robot {number:<3} {:>6} steps, {:>6} cells known, {:>5} frames of {:>7} bytes sent, {}",
+            "  robot {number:<3} {:>6} steps, {:>5} frames of {:>7} bytes sent, {}; {} of {} cells were first learnt from others",
             robot.steps,
-            robot.cells_known,
             robot.frames_sent,
             robot.bytes_sent,
-            state(robot)
+            state(robot),
+            robot.hearsay.cells,
+            robot.cells_known,
         );
+    }
+    for (number, robot) in summary.robots.iter().enumerate() {
+        for doubt in doubts(robot) {
+            println!("  robot {number:<3} {doubt}");
+        }
     }
     if let Some(measured) = &summary.firmware {
         print_measured(measured);
@@ -76,6 +83,35 @@ fn print_measured(measured: &Measured) {
         measured.peak_stack_bytes,
         measured.stack_bytes
     );
+}
+
+/// What speaks against what a robot heard.
+fn doubts(robot: &RobotSummary) -> Vec<String> {
+    let Hearsay {
+        contradictions,
+        contradicted_by,
+        same_id,
+        refused,
+        ..
+    } = robot.hearsay;
+    let mut doubts = Vec::new();
+    if same_id > 0 {
+        doubts.push(format!(
+            "heard {same_id} frames of another robot with its id: each needs its own"
+        ));
+    }
+    if contradictions > 0 {
+        let by = contradicted_by.map_or(String::new(), |id| format!(", mostly robot {}", id.0));
+        doubts.push(format!(
+            "was told {contradictions} cells otherwise than it saw them{by}: do its origin and axes agree?"
+        ));
+    }
+    if refused > 0 {
+        doubts.push(format!(
+            "refused {refused} frames: damaged, or not signed with its key"
+        ));
+    }
+    doubts
 }
 
 /// What an incomplete run left, and why.

@@ -9,6 +9,7 @@
 
 mod execute;
 pub mod figures;
+pub mod ghosts;
 mod journal;
 mod parquet;
 mod plan;

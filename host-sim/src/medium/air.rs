@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use super::{Fate, Message};
+use super::{Fate, Forger, Message};
 use crate::world::World;
 
 /// What goes wrong in the air besides plain loss. None of it by default.
@@ -25,6 +25,9 @@ pub struct AirFaults {
     pub delay: u32,
     /// Share of received frames with wrong bits or cut short, 0 to 1. Only frames.
     pub corruption: f64,
+    /// Somebody who writes frames of his own. Only frames.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub forger: Option<Forger>,
 }
 
 /// Who can hear whom.

@@ -1,6 +1,7 @@
 //! How robots hear of each other.
 
 mod air;
+mod forger;
 mod ideal;
 mod radio;
 
@@ -12,6 +13,7 @@ use planner_core::RobotId;
 use serde::{Deserialize, Serialize};
 
 pub use air::{AirFaults, Partition, Reach};
+pub use forger::{Forger, Forgery};
 pub use ideal::Ideal;
 pub use radio::Radio;
 
@@ -88,10 +90,11 @@ impl MediumKind {
         seed: u64,
         world: Arc<World>,
     ) -> Box<dyn Medium<TW, TH>> {
+        let forger = faults.forger;
         let air = Air::new(faults, loss, seed, world);
         match self {
             Self::Ideal => Box::new(Ideal::new(air, sync)),
-            Self::Radio => Box::new(Radio::new(air, sync)),
+            Self::Radio => Box::new(Radio::new(air, sync, forger, seed)),
         }
     }
 }

@@ -4,6 +4,7 @@ use planner_core::RobotId;
 use planner_core::radio::MAX_LEN;
 
 use super::air::Air;
+use super::forger::{Desk, Forger};
 use super::{Fate, Medium, Message};
 use crate::fleet::Robot;
 
@@ -15,6 +16,7 @@ pub struct Radio {
     sync: u32,
     /// Frames on their way, those sent first first.
     flights: Vec<Flight>,
+    forger: Option<Desk>,
 }
 
 /// One copy of a frame on its way to one robot.
@@ -26,11 +28,12 @@ struct Flight {
 }
 
 impl Radio {
-    pub(super) fn new(air: Air, sync: u32) -> Self {
+    pub(super) fn new(air: Air, sync: u32, forger: Option<Forger>, seed: u64) -> Self {
         Self {
             air,
             sync,
             flights: Vec::new(),
+            forger: forger.map(|forger| Desk::new(forger, seed)),
         }
     }
 
@@ -99,5 +102,8 @@ impl<const TW: usize, const TH: usize> Medium<TW, TH> for Radio {
             self.speak(tick, robots);
         }
         self.deliver(tick, robots);
+        if let Some(forger) = &mut self.forger {
+            forger.forge(tick, robots);
+        }
     }
 }

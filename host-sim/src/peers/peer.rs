@@ -1,7 +1,7 @@
 //! A robot that walks to the frontier that a rule assigns to it.
 
 use planner_core::map::ExtentError;
-use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+use planner_core::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::{
     Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,
     TileSet,
@@ -169,6 +169,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         self.position = sighting.centre();
         self.map.visit(self.position);
         let learnt = self.map.observe(sighting);
+        self.link.look(sighting);
         self.link.announce(&mut self.map);
         self.learn(learnt)
     }
@@ -246,12 +247,17 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         }
     }
 
+    fn hearsay(&self) -> Hearsay {
+        self.link.hearsay()
+    }
+
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
         let learnt = self.map.join_tiles(other, tiles);
+        self.link.joined(learnt);
         self.learn(learnt)
     }
 

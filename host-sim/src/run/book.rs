@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use planner_core::radio::Hearsay;
 use planner_core::{Cell, Map};
 
 use super::{Assignments, Outcome, Progress, RobotOutcome, Scenario};
@@ -46,6 +47,7 @@ impl Book {
                     sent: Sent::default(),
                     stop: None,
                     alive: true,
+                    hearsay: Hearsay::default(),
                 };
                 robots
             ],
@@ -129,6 +131,7 @@ impl Book {
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
+            noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
             noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);

@@ -325,6 +325,7 @@ impl Header {
             byte_budget: self.byte_budget,
             loss: self.loss,
             air: self.air,
+            key: None,
             seed: self.seed,
             solid: self.solid,
             max_ticks: self.max_ticks,

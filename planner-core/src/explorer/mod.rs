@@ -38,6 +38,8 @@
 //! Every tick lowers this, or a search or a wait goes on that ends by itself:
 //! - *Stopped, off the grid, or nothing seen yet*: nothing is decided.
 //! - *No frontier on the map*: it stops.
+//! - *Hints do not count any more* (`purse`): the far search begins again, once until new
+//!   cells fill the purse.
 //! - *The plan is dropped*: its goal was reached; or its goal or its next cell was set
 //!   aside, which lowered 2. (Were either known otherwise now, something was learnt.)
 //! - *Without a plan on a frontier cell* (`look`): a look is made; after the last one the
@@ -93,6 +95,7 @@ mod maybe;
 mod others;
 mod patch;
 mod path;
+mod purse;
 mod role;
 mod surroundings;
 mod wave;
@@ -112,7 +115,7 @@ use window::{Aim, Candidate, NearSearch};
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
 use crate::planner::Planner;
-use crate::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::Sighting;
 
@@ -228,8 +231,6 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     stepping: bool,
     /// Whether the last pose lay off the grid.
     is_astray: bool,
-    /// Whether others told a cell that was not known.
-    has_heard: bool,
     /// Looks from where the body stands that were asked for, whatever its role.
     looks: u8,
     /// Steps that were held since the last one that was made.
@@ -273,7 +274,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             far_is_doubtful: false,
             stepping: false,
             is_astray: false,
-            has_heard: false,
             looks: 0,
             holds: 0,
             waiting: Maybe::Nothing,
@@ -322,7 +322,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far_is_doubtful = false;
         self.stepping = false;
         self.is_astray = false;
-        self.has_heard = false;
         self.looks = 0;
         self.holds = 0;
         self.waiting = Maybe::Nothing;
@@ -348,7 +347,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.around.map.stand(position);
             learnt.closed = learnt.closed.saturating_sub(1);
         }
-        self.has_heard |= learnt.cells > 0;
         self.learn(learnt);
         learnt
     }
@@ -417,7 +415,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn decide_near(&mut self) -> Near {
         let (now, id) = (self.around.now, self.id);
         self.role.since = 0;
-        let knows_all = self.others.exploring().all(|other| other.is_fresh(now));
+        let knows_all = self.others.are_all_fresh(now);
         let aim = Aim {
             goal: self.last_goal,
             hysteresis: self.config.hysteresis,
@@ -511,7 +509,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             .aside
             .verdict(self.config.patience, frontiers, now)
         {
-            Verdict::Nothing if self.has_heard => Some(Stop::Enclosed { frontiers }),
+            Verdict::Nothing if self.link.hearsay().cells > 0 => Some(Stop::Enclosed { frontiers }),
             Verdict::Nothing => Some(Stop::OutOfReach { frontiers }),
             Verdict::Blocked(at) => Some(Stop::Blocked { frontiers, at }),
             Verdict::Held(at) => Some(Stop::Held { frontiers, at }),
@@ -597,6 +595,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             // What it stopped for was true of another place.
             self.resume();
         }
+        self.others.purse.saw(learnt.cells);
+        self.link.look(sighting);
         self.around.map.visit(self.around.position);
         self.link.announce(&mut self.around.map);
         self.learn(learnt);
@@ -625,6 +625,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             return self.stop(Stop::nothing_left(edge));
         }
         self.others.forget(self.around.now, self.config.memory);
+        if self.others.pay(&self.around.map) {
+            // It was made of hints.
+            self.far.cancel();
+        }
         let now = self.around.now;
         self.far_is_doubtful |= self.around.aside.tick(self.config.patience, now);
         if !self.has_plan() {
@@ -744,12 +748,17 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         Ok(heard)
     }
 
+    fn hearsay(&self) -> Hearsay {
+        self.link.hearsay()
+    }
+
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.around.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
         let learnt = self.around.map.join_tiles(other, tiles);
+        self.link.joined(learnt);
         self.learn_from_others(learnt)
     }
 

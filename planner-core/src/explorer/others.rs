@@ -1,10 +1,12 @@
 //! What the robot last heard of the others. Hints with an age: they steer who
-//! goes where, and nothing else depends on them.
+//! goes where, and nothing else depends on them. What they cost is paid from a purse.
 
 use heapless::Vec;
 
+use super::purse::Purse;
 use crate::cell::Cell;
 use crate::list;
+use crate::map::Map;
 use crate::robot::{Activity, RobotId, Status};
 
 /// Other robots that are remembered; of more, the nearest.
@@ -35,11 +37,15 @@ impl Other {
 #[derive(Debug)]
 pub(crate) struct Others {
     list: Vec<Other, MAX_OTHERS>,
+    pub(crate) purse: Purse,
 }
 
 impl Others {
     pub(crate) const fn new() -> Self {
-        Self { list: Vec::new() }
+        Self {
+            list: Vec::new(),
+            purse: Purse::new(),
+        }
     }
 
     /// Takes in a status. Work: the list once.
@@ -87,8 +93,24 @@ impl Others {
             .retain(|other| now.saturating_sub(other.heard_at) <= memory);
     }
 
-    /// Those that still explore, by id.
+    /// Pays for a tick with them; says whether they do not count any more from now on.
+    pub(crate) fn pay<const TW: usize, const TH: usize>(&mut self, map: &Map<TW, TH>) -> bool {
+        let heeds = self.heard().next().is_some();
+        self.purse.pay(heeds, map.known_cells(), map.extent())
+    }
+
+    /// Those that still explore, by id; nobody while hints do not count.
     pub(crate) fn exploring(&self) -> impl Iterator<Item = &Other> {
+        self.heard().filter(|_| !self.purse.is_empty())
+    }
+
+    /// Whether the robot knows where every other one went that it has heard of.
+    pub(crate) fn are_all_fresh(&self, now: u32) -> bool {
+        let mut heard = self.heard();
+        heard.all(|other| !self.purse.is_empty() && other.is_fresh(now))
+    }
+
+    fn heard(&self) -> impl Iterator<Item = &Other> {
         self.list.iter().filter(|other| !other.has_stopped)
     }
 }

@@ -460,10 +460,12 @@ fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
                     told
                 );
             }
-            Stop::Enclosed { .. } => prop_assert!(scene.solid || robot.has_heard, "{}", told),
+            Stop::Enclosed { .. } => {
+                prop_assert!(scene.solid || robot.hearsay().cells > 0, "{}", told)
+            }
             Stop::OutOfReach { .. } => {
                 let is_alone = scene.start.len() == 1;
-                prop_assert!(!is_alone || !robot.has_heard, "{}", told);
+                prop_assert!(!is_alone || robot.hearsay().cells == 0, "{}", told);
             }
             Stop::Blocked { at, .. } | Stop::Held { at, .. } => {
                 let is_held = matches!(stop, Stop::Held { .. });

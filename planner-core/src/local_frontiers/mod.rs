@@ -41,7 +41,7 @@ mod view;
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{ExtentError, Learnt, Map, TileSet};
 use crate::planner::Planner;
-use crate::radio::{FrameError, Heard, Link, MAX_LEN};
+use crate::radio::{FrameError, Heard, Hearsay, Link, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
 
@@ -222,6 +222,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
         self.position = sighting.centre();
         self.view = View::of(sighting);
         let learnt = self.map.observe(sighting);
+        self.link.look(sighting);
         self.link.announce(&mut self.map);
         self.note(learnt)
     }
@@ -330,12 +331,17 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
         Ok(heard)
     }
 
+    fn hearsay(&self) -> Hearsay {
+        self.link.hearsay()
+    }
+
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.map)
     }
 
     fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
         let learnt = self.map.join_tiles(other, tiles);
+        self.link.joined(learnt);
         self.note(learnt)
     }
 

@@ -69,7 +69,7 @@ impl<'a> Sealed<'a> {
             return Err(FrameError::Kind(theirs));
         }
         let intact = match self.key {
-            Some(key) => key.tag(self.body) == self.check,
+            Some(key) => key.verifies(self.body, self.check),
             None => CHECK.checksum(self.body).to_le_bytes() == self.check,
         };
         if !intact {

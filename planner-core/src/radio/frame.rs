@@ -86,8 +86,10 @@ pub enum FrameError {
     Check,
     /// The sender's map is of another place, resolution or size.
     OtherGrid(GridId),
-    /// The robot's own frame.
+    /// The robot's own frame, one of its last: an echo.
     Own,
+    /// Another robot's frame under this robot's own id: each must have its own.
+    SameId(RobotId),
     /// A field holds what it cannot.
     Field(Field),
 }
@@ -108,6 +110,10 @@ impl fmt::Display for FrameError {
                 grid.0
             ),
             Self::Own => write!(f, "the frame is the robot's own"),
+            Self::SameId(RobotId(id)) => write!(
+                f,
+                "another robot has the id {id} too: give each robot of the fleet its own id"
+            ),
             Self::Field(field) => write!(f, "the frame's {field:?} field is out of range"),
         }
     }

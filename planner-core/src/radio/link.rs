@@ -4,10 +4,13 @@ use heapless::Vec;
 
 use super::envelope::CHECK;
 use super::frame::{Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
+use super::hearsay::{Hearsay, Witness};
 use super::outbox::Outbox;
+use super::sent::Sent;
 use crate::cell::Extent;
 use crate::map::{Learnt, Map, TileSet};
 use crate::robot::{RobotId, Status};
+use crate::sight::Sighting;
 
 /// Names a grid: robots whose maps differ in origin, resolution or size do not
 /// understand each other.
@@ -51,8 +54,21 @@ impl Key {
         [a, b, c, d]
     }
 
+    /// Whether `tag` is that of `bytes`, in a time that does not hang on how much of it
+    /// is.
+    #[cfg(feature = "keyed")]
+    pub(crate) fn verifies(&self, bytes: &[u8], tag: &[u8]) -> bool {
+        use subtle::ConstantTimeEq;
+        self.tag(bytes).ct_eq(tag).into()
+    }
+
     #[cfg(not(feature = "keyed"))]
     pub(crate) fn tag(&self, _: &[u8]) -> [u8; 4] {
+        match *self {}
+    }
+
+    #[cfg(not(feature = "keyed"))]
+    pub(crate) fn verifies(&self, _: &[u8], _: &[u8]) -> bool {
         match *self {}
     }
 }
@@ -127,6 +143,13 @@ pub struct Heard {
 const SENDERS: usize = 16;
 /// Ticks without a newer frame after which a sender may start counting anew.
 const SILENCE: u16 = 256;
+/// Frames that may be under way: by so many a number may run ahead of what the budget
+/// allows.
+const UNDER_WAY: u16 = 32;
+/// Bytes of the shortest frame.
+const SHORTEST: u16 = 16;
+/// Own frames that are remembered, to know their echo.
+const ECHOES: usize = 8;
 
 /// The last frame heard of a sender.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,6 +171,9 @@ pub struct Link<const TH: usize> {
     /// Bytes that may be sent now.
     credit: u16,
     latest: Vec<Latest, SENDERS>,
+    sent: Sent<ECHOES>,
+    witness: Witness,
+    hearsay: Hearsay,
 }
 
 impl<const TH: usize> Link<TH> {
@@ -161,6 +187,9 @@ impl<const TH: usize> Link<TH> {
             outbox: Outbox::new(),
             credit: 0,
             latest: Vec::new(),
+            sent: Sent::new(),
+            witness: Witness::new(),
+            hearsay: Hearsay::new(),
         }
     }
 
@@ -191,6 +220,21 @@ impl<const TH: usize> Link<TH> {
     /// others told goes out again in turn, not at once.
     pub fn announce<const TW: usize>(&mut self, map: &mut Map<TW, TH>) {
         self.outbox.add(&map.take_changed());
+    }
+
+    /// What the robot saw: what others tell is held against it. Work: eight rows.
+    pub fn look(&mut self, sighting: &Sighting) {
+        self.witness.look(sighting);
+    }
+
+    /// The map has learnt from others without a frame.
+    pub fn joined(&mut self, learnt: Learnt) {
+        self.hearsay.told(learnt.cells);
+    }
+
+    /// What was heard so far, and what speaks against it.
+    pub const fn hearsay(&self) -> Hearsay {
+        self.hearsay
     }
 
     /// The tiles that changed since the last call, for media that carry whole maps.
@@ -233,6 +277,8 @@ impl<const TH: usize> Link<TH> {
             tiles,
         };
         let length = frame.encode(self.config.key.as_ref(), buffer);
+        self.sent
+            .note(self.sequence, buffer.get(..length).unwrap_or(&[]));
         self.sequence = self.sequence.wrapping_add(1);
         self.credit = self.credit.saturating_sub(length as u16);
         Some(length)
@@ -241,24 +287,25 @@ impl<const TH: usize> Link<TH> {
     /// Reads a frame and joins its tiles into the map. Work: two tiles.
     ///
     /// # Errors
-    /// See [`FrameError`]; nothing has changed then.
+    /// See [`FrameError`]; nothing but [`hearsay`](Self::hearsay) has changed then.
     pub fn receive<const TW: usize>(
         &mut self,
         bytes: &[u8],
         map: &mut Map<TW, TH>,
     ) -> Result<Heard, FrameError> {
-        let frame = Frame::decode(bytes, self.config.key.as_ref(), self.grid, map.extent())?;
-        if frame.sender == self.id {
-            return Err(FrameError::Own);
-        }
+        let frame = self.read(bytes, map.extent());
+        let frame = frame.inspect_err(|&error| self.hearsay.refuse(error))?;
         let mut learnt = Learnt::default();
         for record in &frame.tiles {
+            self.witness
+                .hear(&mut self.hearsay, frame.sender, record, map);
             learnt += map.join_tile(record.at, record.tile);
             if map.tile_inside(record.at) == record.tile {
                 // The sender knows all of it.
                 self.outbox.told(record.at);
             }
         }
+        self.hearsay.told(learnt.cells);
         map.take_changed();
         let is_news = self.is_news(frame.sender, frame.sequence);
         Ok(Heard {
@@ -268,17 +315,34 @@ impl<const TH: usize> Link<TH> {
         })
     }
 
-    /// Whether a sender's number lies in the half of all numbers that follow its
-    /// last one, which it then becomes. Of more than [`SENDERS`] senders some are
-    /// forgotten, and believed.
+    /// A frame of another robot.
+    fn read(&mut self, bytes: &[u8], extent: Extent) -> Result<Frame, FrameError> {
+        let frame = Frame::decode(bytes, self.config.key.as_ref(), self.grid, extent)?;
+        if frame.sender == self.id {
+            return Err(self
+                .sent
+                .refusal(self.id, self.sequence, frame.sequence, bytes));
+        }
+        Ok(frame)
+    }
+
+    /// Whether a sender's number follows its last one, which it then becomes: not by
+    /// more frames than the sender can have sent since. A number that runs ahead of that
+    /// changes nothing, so whoever forges one silences nobody. Of more than [`SENDERS`]
+    /// senders some are forgotten, and believed.
     fn is_news(&mut self, sender: RobotId, sequence: u16) -> bool {
+        let a_tick = self.config.bytes_per_tick.max(MAX_LEN as u16) / SHORTEST + 1;
         let heard = Latest {
             sender,
             sequence,
             age: 0,
         };
         if let Some(latest) = self.latest.iter_mut().find(|of| of.sender == sender) {
-            let is_news = (sequence.wrapping_sub(latest.sequence) as i16) > 0;
+            let most = a_tick
+                .saturating_mul(latest.age + 2)
+                .saturating_add(UNDER_WAY);
+            let ahead = sequence.wrapping_sub(latest.sequence);
+            let is_news = (1..=most.min(i16::MAX as u16)).contains(&ahead);
             if is_news {
                 *latest = heard;
             }

@@ -7,13 +7,17 @@
 
 mod envelope;
 mod frame;
+mod hearsay;
 mod link;
 mod outbox;
+mod sent;
 mod surface_frame;
 mod voxel_frame;
 
 pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
+pub use hearsay::Hearsay;
 pub use link::{GridId, Heard, Key, Link, LinkConfig};
+pub(crate) use sent::Sent;
 pub(crate) use surface_frame::position_on_wire;
 pub use surface_frame::{HeightRecord, SurfaceFrame};
 pub(crate) use voxel_frame::MAX_PATCHES;

@@ -8,7 +8,7 @@ use super::peers::{Peer, Peers};
 use super::{Action, Limits, Motion, Status};
 use crate::cell::{Cell, Direction, Extent};
 use crate::point::Point;
-use crate::radio::{FrameError, HeightRecord, LinkConfig, MAX_LEN};
+use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN};
 use crate::robot::{RobotId, Stop, Wait};
 use crate::surface::{Bits, Column, Height, Patch, Surface, Tile, TooLarge, distance_to_tile};
 
@@ -258,6 +258,12 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         }
     }
 
+    /// How many columns of the map others told first, and what was refused.
+    /// Contradictions are not counted over heights.
+    pub const fn hearsay(&self) -> Hearsay {
+        self.link.hearsay()
+    }
+
     /// The other robots as last heard.
     pub fn peers(&self) -> impl Iterator<Item = &Peer> {
         self.peers.iter()
@@ -332,7 +338,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     /// brought.
     ///
     /// # Errors
-    /// See [`FrameError`]; nothing has changed then.
+    /// See [`FrameError`]; nothing but [`hearsay`](Self::hearsay) has changed then.
     pub(super) fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
         let frame = self.link.read(bytes, self.surface.extent())?;
         let before = self.surface.known_columns();
@@ -399,7 +405,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         if patch.fresh {
             self.news.share(patch.tile, patch.cells);
         }
+        let before = self.surface.known_columns();
         self.surface.merge(patch);
+        self.link.told(self.surface.known_columns() - before);
     }
 
     pub(super) fn report(&mut self, motion: Motion, at: Point) {

@@ -1,7 +1,9 @@
 //! One robot's end of the radio over a surface, and the turn of its map.
 
 use crate::cell::Extent;
-use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, SurfaceFrame, position_on_wire};
+use crate::radio::{
+    FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, SurfaceFrame, position_on_wire,
+};
 use crate::robot::RobotId;
 use crate::surface::Tile;
 
@@ -88,16 +90,55 @@ impl Link {
     /// Writes `frame`, and counts it.
     pub(super) fn send(&mut self, frame: &SurfaceFrame, buffer: &mut [u8; MAX_LEN]) -> usize {
         let length = frame.encode(self.sender.key(), buffer);
-        self.sender.sent(length);
+        self.sender.sent(buffer.get(..length).unwrap_or(&[]));
         length
     }
 
     /// Reads another robot's frame.
-    pub(super) fn read(&self, bytes: &[u8], extent: Extent) -> Result<SurfaceFrame, FrameError> {
-        let frame = SurfaceFrame::decode(bytes, self.sender.key(), self.sender.grid, extent)?;
-        if frame.sender == self.sender.id {
-            return Err(FrameError::Own);
-        }
-        Ok(frame)
+    pub(super) fn read(
+        &mut self,
+        bytes: &[u8],
+        extent: Extent,
+    ) -> Result<SurfaceFrame, FrameError> {
+        let read = SurfaceFrame::decode(bytes, self.sender.key(), self.sender.grid, extent);
+        self.sender
+            .admit(bytes, read, |frame| (frame.sender, frame.sequence))
+    }
+
+    /// The map has learnt `columns` from others.
+    pub(super) fn told(&mut self, columns: u32) {
+        self.sender.hearsay.told(columns);
+    }
+
+    /// What was heard so far.
+    pub(super) const fn hearsay(&self) -> Hearsay {
+        self.sender.hearsay
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::point::Point;
+
+    const EXTENT: Extent = Extent::new(20, 20);
+    const STATUS: Status = Status {
+        position: Point::new(3.0, 4.0, 5.0),
+        target: None,
+        stopped: false,
+    };
+
+    #[test]
+    fn an_echo_is_told_from_a_robot_of_the_same_id() {
+        let link = || Link::new(LinkConfig::new(), RobotId(7), EXTENT);
+        let (mut robot, mut twin) = (link(), link());
+        let mut buffer = [0; MAX_LEN];
+        let frame = robot.begin_frame(STATUS).unwrap();
+        let length = robot.send(&frame, &mut buffer);
+        let refusal = |link: &mut Link| link.read(&buffer[..length], EXTENT).unwrap_err();
+        assert_eq!(refusal(&mut robot), FrameError::Own);
+        assert_eq!(refusal(&mut twin), FrameError::SameId(RobotId(7)));
+        assert_eq!(robot.hearsay().same_id, 0);
+        assert_eq!(twin.hearsay().same_id, 1);
     }
 }

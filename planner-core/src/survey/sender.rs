@@ -1,7 +1,10 @@
 //! What every frame of a robot takes: a number, and bytes of its budget.
 
-use crate::radio::{GridId, Key, LinkConfig, MAX_LEN};
+use crate::radio::{FrameError, GridId, Hearsay, Key, LinkConfig, MAX_LEN, Sent};
 use crate::robot::RobotId;
+
+/// Own frames that are remembered, to know their echo: those of three steps.
+const ECHOES: usize = 32;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Sender {
@@ -13,6 +16,8 @@ pub(crate) struct Sender {
     bytes_per_tick: u16,
     /// Bytes that may be sent now.
     credit: u16,
+    echoes: Sent<ECHOES>,
+    pub(crate) hearsay: Hearsay,
 }
 
 impl Sender {
@@ -29,6 +34,8 @@ impl Sender {
             key: config.key,
             bytes_per_tick: config.bytes_per_tick,
             credit: config.bytes_per_tick,
+            echoes: Sent::new(),
+            hearsay: Hearsay::new(),
         }
     }
 
@@ -47,9 +54,28 @@ impl Sender {
         usize::from(self.credit) >= MAX_LEN
     }
 
-    /// Counts a frame of `length` bytes.
-    pub(crate) fn sent(&mut self, length: usize) {
+    /// Counts a frame.
+    pub(crate) fn sent(&mut self, frame: &[u8]) {
+        self.echoes.note(self.sequence, frame);
         self.sequence = self.sequence.wrapping_add(1);
-        self.credit = self.credit.saturating_sub(length as u16);
+        self.credit = self.credit.saturating_sub(frame.len() as u16);
+    }
+
+    /// Takes in what a frame in `bytes` was read as: not if the robot itself is the
+    /// sender. Counts what is refused.
+    pub(crate) fn admit<F>(
+        &mut self,
+        bytes: &[u8],
+        read: Result<F, FrameError>,
+        sender: impl Fn(&F) -> (RobotId, u16),
+    ) -> Result<F, FrameError> {
+        let admitted = read.and_then(|frame| {
+            let (from, sequence) = sender(&frame);
+            if from == self.id {
+                return Err(self.echoes.refusal(from, self.sequence, sequence, bytes));
+            }
+            Ok(frame)
+        });
+        admitted.inspect_err(|&error| self.hearsay.refuse(error))
     }
 }

@@ -65,7 +65,7 @@ mod news;
 use heapless::Vec;
 
 use crate::cell::Extent;
-use crate::radio::{FrameError, GridId, LinkConfig, MAX_LEN, VoxelFrame};
+use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, VoxelFrame};
 use crate::robot::{RobotId, Stop, Wait};
 use crate::surface::Tile;
 use crate::survey::{Pause, Peer, Peers, Sender};
@@ -168,8 +168,6 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     /// Steps since the last progress, and the number of known voxels in the last one.
     fruitless: u16,
     last_known: u32,
-    /// Whether anything was learnt from others.
-    heard: bool,
     stopped: bool,
     /// Why, and the number of known voxels then.
     reason: (Stop<Voxel>, u32),
@@ -208,7 +206,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             looked: false,
             fruitless: 0,
             last_known: 0,
-            heard: false,
             stopped: false,
             reason: (Stop::Complete, 0),
             pause: Pause::None,
@@ -257,7 +254,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.lost = false;
         self.looked = false;
         self.last_known = 0;
-        self.heard = false;
         self.pause = Pause::None;
         self.work = 0;
         self.resume();
@@ -413,21 +409,20 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         };
         self.news.tell(&self.volume, &mut frame);
         let length = frame.encode(self.sender.key(), buffer);
-        self.sender.sent(length);
+        self.sender.sent(buffer.get(..length).unwrap_or(&[]));
         Some(length)
     }
 
     /// Takes in another robot's frame; gives the number of voxels that it brought.
     ///
     /// # Errors
-    /// See [`FrameError`]; nothing has changed then.
+    /// See [`FrameError`]; nothing but [`hearsay`](Self::hearsay) has changed then.
     pub fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
-        let Sender { grid, id, .. } = self.sender;
+        let grid = self.sender.grid;
         let (extent, levels) = (self.volume.extent(), self.volume.levels());
-        let frame = VoxelFrame::decode(bytes, self.sender.key(), grid, extent, levels)?;
-        if frame.sender == id {
-            return Err(FrameError::Own);
-        }
+        let read = VoxelFrame::decode(bytes, self.sender.key(), grid, extent, levels);
+        let sender = |frame: &VoxelFrame| (frame.sender, frame.sequence);
+        let frame = self.sender.admit(bytes, read, sender)?;
         let before = self.volume.known_voxels();
         for patch in &frame.patches {
             self.merge(patch);
@@ -437,14 +432,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.peers
             .hear_frame(frame.sender.0, frame.status, frame.sequence);
-        Ok(self.volume.known_voxels() - before)
+        let learnt = self.volume.known_voxels() - before;
+        self.sender.hearsay.told(learnt);
+        Ok(learnt)
     }
 
     /// Takes in a piece of another robot's map; says whether it brought anything.
     pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
-        let is_new = self.volume.merge(patch);
-        self.heard |= is_new;
-        is_new
+        let before = self.volume.known_voxels();
+        let brought = self.volume.merge(patch);
+        self.sender
+            .hearsay
+            .told(self.volume.known_voxels() - before);
+        brought
+    }
+
+    /// How many voxels of the map others told first, and what was refused.
+    /// Contradictions are not counted over voxels.
+    pub const fn hearsay(&self) -> Hearsay {
+        self.sender.hearsay
     }
 
     /// Decides. Call it once per step.
@@ -551,7 +557,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.stop(match missed {
             Some(at) => self.unseen(at),
             None if frontiers == 0 => Stop::Complete,
-            None if self.heard => Stop::Enclosed { frontiers },
+            None if self.sender.hearsay.cells > 0 => Stop::Enclosed { frontiers },
             None => Stop::OutOfReach { frontiers },
         })
     }

@@ -278,6 +278,14 @@ fn late_frames_are_old_news() {
         robots[1].receive(bytes).unwrap();
     }
     assert_eq!(robots[0].receive(&frames[0]), Err(FrameError::Own));
+    // Another robot of the same id.
+    let mut buffer = [0; MAX_LEN];
+    robots[0].tick();
+    let length = robots[0].transmit(&mut buffer).unwrap();
+    let mut twin = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    let refused = twin.receive(&buffer[..length]);
+    assert_eq!(refused, Err(FrameError::SameId(RobotId(0))));
+    assert_eq!(twin.hearsay().same_id, 1);
     let heard: Vec<Voxel> = robots[1]
         .peers
         .iter()

@@ -198,6 +198,7 @@ fn state(planner: &Robot) -> State {
         },
         role: planner.role(),
         waiting: planner.waiting(),
+        hearsay: planner.hearsay(),
     }
 }
 

@@ -86,14 +86,145 @@ fn an_error_changes_nothing() {
         ..LinkConfig::new()
     };
     for (mut receiver, error) in [
-        (link(1, LinkConfig::new()), FrameError::Own),
+        (sender.clone(), FrameError::Own),
+        (link(1, LinkConfig::new()), FrameError::SameId(RobotId(1))),
         (link(2, elsewhere), FrameError::OtherGrid(sender.grid)),
     ] {
-        let (before, mut heard_by) = (receiver.clone(), map());
+        let (mut before, mut heard_by) = (receiver.clone(), map());
         assert_eq!(receiver.receive(&frame, &mut heard_by), Err(error));
+        // But for the counters.
+        before.hearsay = receiver.hearsay;
         assert_eq!(receiver, before);
         assert!(heard_by == map());
     }
+}
+
+#[test]
+fn an_echo_is_told_from_a_robot_of_the_same_id() {
+    let (mut robot, mut twin) = (link(1, LinkConfig::new()), link(1, LinkConfig::new()));
+    let frames: std::vec::Vec<_> = (0..20)
+        .map(|_| next_frame(&mut robot, &explored()))
+        .collect();
+    let same_id = Err(FrameError::SameId(RobotId(1)));
+    for (age, frame) in (1..).zip(frames.iter().rev()) {
+        let echo = robot.receive(frame, &mut map());
+        assert_eq!(
+            echo == Err(FrameError::Own),
+            age <= ECHOES,
+            "{age}: {echo:?}"
+        );
+    }
+    // The twin is behind, so each notices the other; with the same numbers too, as soon
+    // as they have different things to say.
+    assert_eq!(twin.receive(&frames[0], &mut map()), same_id);
+    for frame in &frames {
+        let other = next_frame(&mut twin, &map());
+        assert_eq!(twin.receive(frame, &mut map()), same_id);
+        assert_eq!(robot.receive(&other, &mut map()), same_id);
+    }
+    assert_eq!(twin.hearsay().same_id, 21);
+    assert!(std::format!("{}", FrameError::SameId(RobotId(1))).contains("id 1"));
+}
+
+#[test]
+fn a_number_far_ahead_is_no_news_and_silences_nobody() {
+    let (mut sender, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
+    let is_news = |receiver: &mut Small, sender: &mut Small| {
+        let frame = next_frame(sender, &map());
+        let heard = receiver.receive(&frame, &mut map()).unwrap();
+        heard.status.is_some()
+    };
+    assert!(is_news(&mut receiver, &mut sender));
+    for ahead in [100, 1000, 30_000, 40_000] {
+        let mut forger = link(1, LinkConfig::new());
+        forger.sequence = sender.sequence.wrapping_add(ahead);
+        assert!(!is_news(&mut receiver, &mut forger), "{ahead}");
+        assert!(is_news(&mut receiver, &mut sender), "{ahead}");
+    }
+    // Who has sent unheard for a while is believed all the same, under any budget.
+    for bytes_per_tick in [55, 550, 5500] {
+        let config = LinkConfig {
+            bytes_per_tick,
+            ..LinkConfig::new()
+        };
+        let (mut sender, mut receiver) = (link(1, config), link(2, config));
+        assert!(is_news(&mut receiver, &mut sender));
+        for ticks in [1, 10, 100, 255] {
+            for _ in 0..ticks {
+                receiver.tick();
+                sender.tick();
+                let mut buffer = [0; MAX_LEN];
+                while sender.transmit(&map(), STATUS, &mut buffer).is_some() {}
+            }
+            sender.tick();
+            assert!(
+                is_news(&mut receiver, &mut sender),
+                "{bytes_per_tick} {ticks}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_others_told_first_and_what_speaks_against_it_is_counted() {
+    use crate::sight::look;
+    let mut receiver = link(2, LinkConfig::new());
+    let mut heard_by = map();
+    // It stands at 4,4 beside a wall in column 6.
+    let here = Cell::new(4, 4);
+    let sighting = look(here, 3, |cell| cell.x == 6);
+    heard_by.observe(&sighting);
+    heard_by.visit(here);
+    receiver.look(&sighting);
+    let say =
+        |receiver: &mut Small, heard_by: &mut Map<4, 4>, id, free: &[Cell], walls: &[Cell]| {
+            let mut told = map();
+            for (cells, obstacle) in [(free, false), (walls, true)] {
+                for &cell in cells {
+                    let (at, bit) = TileIndex::of(cell).unwrap();
+                    let tile = Tile {
+                        known: bit,
+                        obstacle: if obstacle { bit } else { 0 },
+                        visited: 0,
+                    };
+                    told.join_tile(at, tile);
+                }
+            }
+            let mut sender = link(id, LinkConfig::new());
+            sender.announce(&mut told);
+            receiver
+                .receive(&next_frame(&mut sender, &told), heard_by)
+                .unwrap();
+        };
+    let cell = Cell::new;
+    // The truth, and something new.
+    say(
+        &mut receiver,
+        &mut heard_by,
+        3,
+        &[here, cell(20, 4)],
+        &[cell(6, 4)],
+    );
+    let hearsay = receiver.hearsay();
+    assert_eq!((hearsay.cells, hearsay.contradictions), (1, 0));
+    // The axes of robot 4 are turned: one wall where there is none, and the other way
+    // round. Robot 5 once saw a wall that is not there.
+    say(
+        &mut receiver,
+        &mut heard_by,
+        4,
+        &[cell(6, 5)],
+        &[cell(5, 5), cell(4, 5)],
+    );
+    say(&mut receiver, &mut heard_by, 5, &[], &[here]);
+    let hearsay = receiver.hearsay();
+    assert_eq!(hearsay.contradictions, 4);
+    assert_eq!(hearsay.contradicted_by, Some(RobotId(4)));
+    receiver.joined(Learnt {
+        cells: 7,
+        closed: 0,
+    });
+    assert_eq!(receiver.hearsay().cells, 8);
 }
 
 #[test]

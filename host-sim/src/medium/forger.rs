@@ -1,0 +1,271 @@
+//! Somebody in the air who writes frames of his own: he hears and sees everything, and
+//! has no key.
+
+use std::fmt;
+use std::str::FromStr;
+
+use clap::ValueEnum;
+use planner_core::map::{Tile, TileIndex};
+use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
+use planner_core::{Activity, Cell, Extent, Map, RobotId, Status};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use crate::fleet::Robot;
+
+/// What a forger does, and how much of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Forger {
+    /// Frames that each robot hears in a tick, 1 to 1000. [`Crowd`](Forgery::Crowd) and
+    /// [`Stolen`](Forgery::Stolen) have numbers of their own.
+    pub frames: u16,
+    /// What they say.
+    pub kind: Forgery,
+}
+
+/// What forged frames say. All but `any` and `tiles` lie about robots only, never about
+/// cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Forgery {
+    /// Anything: drawn robots with drawn tiles.
+    #[default]
+    Any,
+    /// Robots that are not there, drawn anew in every tick.
+    Hints,
+    /// Robots on the cell of the robot that hears of them.
+    OwnCell,
+    /// Robots on the free cells around it.
+    Around,
+    /// Robots where it goes.
+    Goal,
+    /// A robot where it goes, for three ticks, and far away for three.
+    Jump,
+    /// In every two-hundredth tick each robot is said to have stopped, by a frame with a
+    /// number far ahead of its own.
+    Stolen,
+    /// Robots of all ids, on the cell of the first robot.
+    Crowd,
+}
+
+impl Forgery {
+    /// Those that lie about robots only.
+    pub const HINTS: [Self; 7] = [
+        Self::Hints,
+        Self::OwnCell,
+        Self::Around,
+        Self::Goal,
+        Self::Jump,
+        Self::Stolen,
+        Self::Crowd,
+    ];
+}
+
+/// The name used on the command line, for example `own-cell`.
+impl fmt::Display for Forgery {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.to_possible_value().expect("no kind is hidden");
+        f.write_str(value.get_name())
+    }
+}
+
+/// `N` or `N:KIND`.
+impl FromStr for Forger {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (frames, kind) = text.split_once(':').unwrap_or((text, "any"));
+        let frames = frames.parse().ok().filter(|n| (1..=1000).contains(n));
+        let kind = Forgery::from_str(kind, false).ok();
+        match (frames, kind) {
+            (Some(frames), Some(kind)) => Ok(Self { frames, kind }),
+            _ => {
+                let kinds: Vec<String> = Forgery::value_variants()
+                    .iter()
+                    .map(Forgery::to_string)
+                    .collect();
+                Err(format!(
+                    "expected N or N:KIND with N from 1 to 1000, for example 2:goal; kinds are {}",
+                    kinds.join(", ")
+                ))
+            }
+        }
+    }
+}
+
+/// A forger at work. He draws from a generator of his own, so the air is as without him.
+pub(super) struct Desk {
+    forger: Forger,
+    sequence: u16,
+    chance: ChaCha8Rng,
+    /// He has no key of the fleet, so he tries one.
+    key: Key,
+}
+
+impl Desk {
+    pub(super) fn new(forger: Forger, seed: u64) -> Self {
+        let mut chance = ChaCha8Rng::seed_from_u64(seed ^ 0x666f_7267_6572);
+        let mut key = [0; 16];
+        chance.fill_bytes(&mut key);
+        Self {
+            forger,
+            sequence: 0,
+            chance,
+            key: Key(key),
+        }
+    }
+
+    /// Lets every living robot hear what is forged for it in `tick`.
+    pub(super) fn forge<const TW: usize, const TH: usize>(
+        &mut self,
+        tick: u32,
+        robots: &mut [Robot<TW, TH>],
+    ) {
+        self.sequence = self.sequence.wrapping_add(1);
+        let ids: Vec<RobotId> = robots.iter().map(|robot| robot.id).collect();
+        let Some(first) = robots.first().map(|robot| robot.position) else {
+            return;
+        };
+        for robot in robots.iter_mut().filter(|robot| robot.alive) {
+            for frame in self.frames(tick, robot, &ids, first) {
+                let mut buffer = [0; MAX_LEN];
+                for key in [None, Some(&self.key)] {
+                    let length = frame.encode(key, &mut buffer);
+                    let _ = robot.planner.receive(&buffer[..length]);
+                }
+            }
+        }
+    }
+
+    fn frames<const TW: usize, const TH: usize>(
+        &mut self,
+        tick: u32,
+        robot: &Robot<TW, TH>,
+        ids: &[RobotId],
+        first: Cell,
+    ) -> Vec<Frame> {
+        let map = robot.planner.map();
+        let extent = map.extent();
+        let (here, goal) = (robot.position, robot.planner.status().goal);
+        let frames = self.forger.frames;
+        let ghosts = 0..frames.min(256);
+        let exploring = |position| Status {
+            position,
+            goal: None,
+            activity: Activity::Exploring,
+        };
+        let ghost = |id: u16, status| Frame {
+            grid: grid(extent),
+            sender: RobotId(id as u8),
+            sequence: self.sequence,
+            status,
+            tiles: Default::default(),
+        };
+        match self.forger.kind {
+            Forgery::Any => (0..frames).map(|_| self.drawn(extent, true)).collect(),
+            Forgery::Hints => (0..frames).map(|_| self.drawn(extent, false)).collect(),
+            Forgery::OwnCell => ghosts.map(|id| ghost(id, exploring(here))).collect(),
+            Forgery::Around => free_around(map, here)
+                .zip(ghosts)
+                .map(|(cell, id)| ghost(100 + id, exploring(cell)))
+                .collect(),
+            Forgery::Goal => goal.map_or(Vec::new(), |cell| {
+                let there = Status {
+                    goal,
+                    ..exploring(cell)
+                };
+                ghosts.map(|id| ghost(id, there)).collect()
+            }),
+            Forgery::Jump => goal.map_or(Vec::new(), |cell| {
+                let is_there = (tick / 3).is_multiple_of(2);
+                let at = if is_there { cell } else { Cell::new(0, 0) };
+                ghosts.map(|id| ghost(id, exploring(at))).collect()
+            }),
+            Forgery::Stolen if !tick.is_multiple_of(200) => Vec::new(),
+            Forgery::Stolen => {
+                let stopped = Status {
+                    activity: Activity::Stopped,
+                    ..exploring(Cell::new(0, 0))
+                };
+                let sequence = (tick as u16).wrapping_add(30_000);
+                ids.iter()
+                    .map(|id| Frame {
+                        sequence,
+                        ..ghost(id.0.into(), stopped)
+                    })
+                    .collect()
+            }
+            Forgery::Crowd => (0..256).map(|id| ghost(id, exploring(first))).collect(),
+        }
+    }
+
+    /// A frame with anything in it, in the right form.
+    fn drawn(&mut self, extent: Extent, with_tiles: bool) -> Frame {
+        let status = Status {
+            position: self.cell(extent),
+            goal: (self.below(2) == 0).then(|| self.cell(extent)),
+            activity: match self.below(8) {
+                0 => Activity::Stopped,
+                _ => Activity::Exploring,
+            },
+        };
+        let tiles = if with_tiles { self.below(3) } else { 0 };
+        Frame {
+            grid: grid(extent),
+            sender: RobotId(self.below(256) as u8),
+            sequence: self.below(1 << 16) as u16,
+            status,
+            tiles: (0..tiles).map(|_| self.tile(extent)).collect(),
+        }
+    }
+
+    fn cell(&mut self, extent: Extent) -> Cell {
+        let mut below = |cells: u16| self.below(cells.into()) as i16;
+        Cell::new(below(extent.width), below(extent.height))
+    }
+
+    fn tile(&mut self, extent: Extent) -> TileRecord {
+        let (at, _) = TileIndex::of(self.cell(extent)).expect("cells of a grid have tiles");
+        let inside = (0..64)
+            .filter(|&bit| extent.contains(at.cell(bit)))
+            .fold(0, |mask, bit| mask | 1 << bit);
+        // Few cells, or whole tiles of them.
+        let few = self.chance.next_u64() & self.chance.next_u64() & self.chance.next_u64();
+        let known = inside & if self.below(4) == 0 { !0 } else { few };
+        let obstacle = known & self.chance.next_u64();
+        TileRecord {
+            at,
+            tile: Tile {
+                known,
+                obstacle,
+                visited: known & !obstacle & self.chance.next_u64(),
+            },
+        }
+    }
+
+    fn below(&mut self, n: u32) -> u32 {
+        ((u64::from(self.chance.next_u32()) * u64::from(n)) >> 32) as u32
+    }
+}
+
+fn grid(extent: Extent) -> GridId {
+    let link = LinkConfig::new();
+    GridId::of(extent, link.origin_mm, link.cell_mm)
+}
+
+/// Cells that the map shows free, nearest first, from the robot's own on.
+fn free_around<const TW: usize, const TH: usize>(
+    map: &Map<TW, TH>,
+    here: Cell,
+) -> impl Iterator<Item = Cell> + '_ {
+    let ring = move |radius: i16| {
+        let cells =
+            (-radius..=radius).flat_map(move |dy| (-radius..=radius).map(move |dx| (dx, dy)));
+        cells.filter(move |(dx, dy)| dx.abs().max(dy.abs()) == radius)
+    };
+    (0..8)
+        .flat_map(ring)
+        .map(move |(dx, dy)| Cell::new(here.x + dx, here.y + dy))
+        .filter(|&cell| map.is_free(cell))
+}

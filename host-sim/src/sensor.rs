@@ -198,20 +198,15 @@ mod tests {
         });
         let sensor = Sensor::with_fov(Arc::new(world.unwrap()), 3, fov);
         let sighting = &sensor.view(Cell::new(4, 4), heading).sighting;
-        let mut text = String::new();
-        for y in 1..8 {
-            for x in 1..8 {
-                let cell = Cell::new(x, y);
-                text.push(match (sighting.is_free(cell), sighting.is_blocked(cell)) {
-                    _ if cell == Cell::new(4, 4) => 'R',
-                    (true, _) => '.',
-                    (_, true) => '#',
-                    _ => ' ',
-                });
-            }
-            text = text.trim_end().to_owned() + "\n";
-        }
-        text
+        let sign = |cell| match (sighting.is_free(cell), sighting.is_blocked(cell)) {
+            _ if cell == Cell::new(4, 4) => 'R',
+            (true, _) => '.',
+            (_, true) => '#',
+            _ => ' ',
+        };
+        let row = |y| (1..8).map(|x| sign(Cell::new(x, y))).collect::<String>();
+        let rows = (1..8).map(|y| row(y).trim_end().to_owned() + "\n");
+        rows.collect()
     }
 
     #[test]

@@ -24,6 +24,7 @@ fn trace() -> Trace {
         ..AirFaults::default()
     };
     scenario.seed = u64::MAX;
+    scenario.max_ticks = 400;
     scenario.faults = Faults {
         deaths: vec![Death {
             robot: RobotId(1),
@@ -53,7 +54,7 @@ fn trace() -> Trace {
         }],
         sensor_failures: vec![SensorFailure {
             robot: RobotId(2),
-            tick: 500,
+            tick: 200,
         }],
         lost_poses: vec![LostPose {
             robot: RobotId(0),
@@ -113,10 +114,8 @@ fn a_header_names_a_field_of_view_and_faults_of_senses_only_where_there_are_any(
 
 #[test]
 fn a_turn_has_codes_of_its_own() {
-    let record = |action| Record {
-        action,
-        ..trace().records[0]
-    };
+    let first = trace().records[0];
+    let record = |action| Record { action, ..first };
     for (direction, code) in Direction::ALL.into_iter().zip(18..) {
         assert_eq!(Deed::Looked(direction).turns_to(), Some(direction));
         let looked = record(code);

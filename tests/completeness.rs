@@ -3,12 +3,12 @@
 
 use std::sync::Arc;
 
-use host_sim::fleet::{Closure, Death, Faults};
+use host_sim::fleet::{Blind, Closure, Death, Faults, LostPose, SensorFailure};
 use host_sim::planners::PlannerKind;
 use host_sim::run::{Options, Scenario, default_max_ticks, run};
 use host_sim::world::{Family, Starts, generate};
-use planner_core::RobotId;
 use planner_core::explorer::Config;
+use planner_core::{Cell, RobotId};
 use proptest::prelude::*;
 
 /// No step is refused from this tick on, within the patience of the explorer.
@@ -100,7 +100,86 @@ fn scenario(case: &Case) -> Option<Scenario> {
     })
 }
 
+/// Robots that lose their poses, and for how many ticks.
+fn lost_poses() -> impl Strategy<Value = Vec<LostPose>> {
+    let spell = (0u8..10, 0u32..300, 1u32..=50);
+    prop::collection::vec(spell, 0..4).prop_map(|spells| {
+        let spells = spells.into_iter();
+        spells
+            .map(|(robot, from, ticks)| LostPose {
+                robot: RobotId(robot),
+                from,
+                until: from + ticks,
+            })
+            .collect()
+    })
+}
+
 proptest! {
+    #[test]
+    fn robots_that_look_one_way_or_lose_their_poses_stop_with_all_that_they_can_reach(
+        case in case(),
+        fov in prop::sample::select(&[360u16, 180, 90, 62][..]),
+        lost_poses in lost_poses(),
+    ) {
+        let Some(mut scenario) = scenario(&case) else {
+            return Err(TestCaseError::reject("no such world"));
+        };
+        scenario.fov = fov;
+        scenario.faults.lost_poses = lost_poses;
+        // Four looks from every cell.
+        scenario.max_ticks *= 5;
+        let (outcome, _) = run(&scenario, Options::default()).unwrap();
+        prop_assert!(outcome.violations.is_empty(), "{:?}", outcome.violations);
+        for (index, robot) in outcome.robots.iter().enumerate().filter(|(_, robot)| robot.alive) {
+            let stop = robot.stop;
+            prop_assert!(stop.is_some_and(|stop| stop.is_complete()), "robot {index}: {stop:?}");
+            prop_assert_eq!(robot.cells_missed, 0, "robot {}", index);
+        }
+    }
+
+    /// Nothing that can be seen is left for a wall that no look shows, and nobody calls
+    /// for ever for a look that shows nothing.
+    #[test]
+    fn robots_stop_beside_what_no_look_shows(
+        case in case(),
+        fov in prop::sample::select(&[360u16, 62][..]),
+        glass in prop::collection::vec(any::<prop::sample::Index>(), 0..4),
+        silent in prop::option::of((0u8..10, 0u32..300)),
+    ) {
+        let Some(mut scenario) = scenario(&case) else {
+            return Err(TestCaseError::reject("no such world"));
+        };
+        let extent = scenario.world.extent();
+        let (width, height) = (extent.width as i16, extent.height as i16);
+        let cells = (0..height).flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
+        let walls: Vec<Cell> = cells.filter(|&cell| !scenario.world.is_free(cell)).collect();
+        prop_assume!(!walls.is_empty());
+        let blind = glass.iter().map(|of| Blind {
+            cell: *of.get(&walls),
+            from: 0,
+            until: u32::MAX,
+        });
+        scenario.faults.blind = blind.collect();
+        let silent = silent.map(|(robot, tick)| SensorFailure {
+            robot: RobotId(robot),
+            tick,
+        });
+        scenario.faults.sensor_failures = silent.into_iter().collect();
+        scenario.fov = fov;
+        // A robot that sees nothing stands in the way for good.
+        scenario.solid = false;
+        scenario.max_ticks *= 5;
+        let (outcome, _) = run(&scenario, Options::default()).unwrap();
+        for (index, robot) in outcome.robots.iter().enumerate().filter(|(_, robot)| robot.alive) {
+            prop_assert!(robot.stop.is_some(), "robot {index} goes on for ever");
+            let is_silent = silent.is_some_and(|of| usize::from(of.robot.0) == index);
+            if !is_silent {
+                prop_assert_eq!(robot.cells_missed, 0, "robot {}: {:?}", index, robot.stop);
+            }
+        }
+    }
+
     #[test]
     fn every_living_robot_stops_with_all_that_it_can_reach(case in case()) {
         let Some(scenario) = scenario(&case) else {

@@ -27,7 +27,7 @@ use planner_core::cao::{Degree, Frame, Model, Sample};
 use planner_core::explorer::{Config, Explorer};
 use planner_core::radio::MAX_LEN;
 use planner_core::rng::Rng;
-use planner_core::{Action, Cell, Motion, Planner, Point, RobotId};
+use planner_core::{Action, Cell, Direction, Motion, Planner, Point, RobotId};
 
 const RANGE: u8 = 5;
 const ROBOTS: usize = 10;
@@ -45,7 +45,7 @@ fn starts(world: &World) -> Vec<Cell> {
 fn sensor(world: &Arc<World>) -> Arc<Sensor> {
     let sensor = Sensor::new(world.clone(), RANGE);
     for cell in world.free_cells() {
-        sensor.view(cell);
+        sensor.view(cell, Direction::East);
     }
     Arc::new(sensor)
 }
@@ -99,7 +99,7 @@ impl Team {
     fn look(&mut self) {
         for robot in &mut self.robots {
             let here = robot.status().position;
-            robot.observe(&self.sensor.view(here).sighting);
+            robot.observe(&self.sensor.view(here, Direction::East).sighting);
         }
     }
 
@@ -181,7 +181,7 @@ fn before_look(ticks: usize) -> Alone {
 #[bench::on_the_way(args = (20), setup = before_look)]
 fn observe((mut robot, sensor): Alone) -> Alone {
     let here = robot.status().position;
-    robot.observe(&sensor.view(here).sighting);
+    robot.observe(&sensor.view(here, Direction::East).sighting);
     (robot, sensor)
 }
 

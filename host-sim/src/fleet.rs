@@ -1,11 +1,20 @@
 //! Robots in a world, and the tick that moves them all.
 
+mod faults;
+
 use std::sync::Arc;
 
 use planner_core::map::TileIndex;
-use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, explorer};
+use planner_core::{
+    Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, explorer,
+};
+
+pub use faults::{
+    Arrival, Blind, Closure, Death, FaultText, Faults, LostPose, Restart, Resume, SensorFailure,
+};
 
 use crate::medium::{Medium, Message};
+use crate::senses::Senses;
 use crate::sensor::Sensor;
 
 /// A robot: a planner and the body that it moves.
@@ -75,59 +84,24 @@ pub enum Deed {
     Yielded,
     /// Stood still.
     Waited,
+    /// Turned its sensor there.
+    Looked(Direction),
     /// Had stopped.
     Stopped(Stop),
 }
 
-/// What goes wrong with robots and cells, and when.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Faults {
-    /// Robots that die.
-    pub deaths: Vec<Death>,
-    /// Robots that come late.
-    pub arrivals: Vec<Arrival>,
-    /// Robots that lose their memory.
-    pub restarts: Vec<Restart>,
-    /// Cells that nobody can enter for a while, and that no sensor shows.
-    pub closures: Vec<Closure>,
-}
-
-/// A robot dies before it acts in a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Death {
-    /// Which one.
-    pub robot: RobotId,
-    /// The first tick in which it does nothing.
-    pub tick: u32,
-}
-
-/// A robot is not in the world before a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Arrival {
-    /// Which one.
-    pub robot: RobotId,
-    /// The first tick in which it stands on its start.
-    pub tick: u32,
-}
-
-/// A robot starts anew where it stands, with an empty map, also if it was dead.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Restart {
-    /// Which one.
-    pub robot: RobotId,
-    /// The first tick after its memory was lost.
-    pub tick: u32,
-}
-
-/// A free cell that cannot be entered in the ticks `from..until`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Closure {
-    /// Which cell.
-    pub cell: Cell,
-    /// First tick.
-    pub from: u32,
-    /// First tick in which it is open again.
-    pub until: u32,
+impl Deed {
+    /// Which way the robot turned by this; `None`: it did not.
+    pub fn turns_to(self) -> Option<Direction> {
+        match self {
+            Self::Moved(to)
+            | Self::Blocked(to)
+            | Self::Held(to)
+            | Self::Exchanged(to)
+            | Self::Looked(to) => Some(to),
+            Self::Yielded | Self::Waited | Self::Stopped(_) => None,
+        }
+    }
 }
 
 /// A planner sent its robot into an obstacle: a bug of the planner.
@@ -156,7 +130,7 @@ pub type Build<const TW: usize, const TH: usize> =
 
 /// All robots of a run, in one world.
 pub struct Fleet<const TW: usize, const TH: usize> {
-    sensor: Arc<Sensor>,
+    senses: Senses,
     medium: Box<dyn Medium<TW, TH>>,
     rules: Rules,
     build: Build<TW, TH>,
@@ -195,7 +169,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         };
         let robots = starts.iter().zip(0..).map(robot).collect();
         Self {
-            sensor,
+            senses: Senses::new(sensor, &rules.faults, starts.len()),
             medium,
             rules,
             build,
@@ -222,6 +196,11 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.medium.messages()
     }
 
+    /// Which way a robot is turned; a sensor that does not look all around looks there.
+    pub fn heading(&self, robot: usize) -> Direction {
+        self.senses.heading(robot)
+    }
+
     /// Number of ticks done.
     pub fn ticks(&self) -> u32 {
         self.tick
@@ -232,12 +211,13 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         &self.violations
     }
 
-    /// Whether every living robot has stopped, and none is still to come.
+    /// Whether every living robot has stopped, and none is still to come or to go on.
     pub fn has_stopped(&self) -> bool {
         let faults = &self.rules.faults;
         let arrivals = faults.arrivals.iter().map(|arrival| arrival.tick);
-        let mut births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
-        births.all(|tick| tick < self.tick)
+        let births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
+        let mut orders = births.chain(faults.resumes.iter().map(|resume| resume.tick));
+        orders.all(|tick| tick < self.tick)
             && self.robots.iter().all(|robot| {
                 let stopped = |step: Step| matches!(step.deed, Deed::Stopped(_));
                 !robot.alive || robot.step.is_some_and(stopped)
@@ -248,9 +228,12 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     /// decides and moves.
     pub fn tick(&mut self) {
         self.meet_fate();
-        for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
-            let view = self.sensor.view(robot.position);
-            robot.planner.observe(&view.sighting);
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            if !robot.alive {
+                continue;
+            }
+            let sighting = self.senses.sighting(self.tick, index, robot.position);
+            robot.planner.observe(&sighting);
             robot.has_exchanged = false;
             robot.sent = Sent::default();
         }
@@ -263,6 +246,9 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
                     true => (Deed::Yielded, 0),
                     false => (self.act(index), self.robots[index].planner.work()),
                 };
+                if let Some(to) = deed.turns_to() {
+                    self.senses.turn(index, to);
+                }
                 self.robots[index].step = Some(Step {
                     at,
                     deed,
@@ -274,7 +260,15 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.tick += 1;
     }
 
-    /// Deaths, arrivals and restarts of this tick.
+    /// A robot goes on after a stop, with the map that it has.
+    pub fn resume(&mut self, robot: usize) {
+        if let Some(robot) = self.robots.get_mut(robot).filter(|robot| robot.alive) {
+            robot.planner.resume();
+            robot.step = None;
+        }
+    }
+
+    /// Deaths, arrivals and restarts of this tick, and who goes on.
     fn meet_fate(&mut self) {
         let faults = &self.rules.faults;
         for robot in &mut self.robots {
@@ -292,13 +286,19 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
                 robot.planner = (self.build)(robot.id, robot.position);
             }
         }
+        let resumes = faults.resumes.iter().filter(|of| of.tick == self.tick);
+        let resumed: Vec<usize> = resumes.map(|of| usize::from(of.robot.0)).collect();
+        resumed.into_iter().for_each(|robot| self.resume(robot));
     }
 
     fn act(&mut self, index: usize) -> Deed {
         let robot = &mut self.robots[index];
         match robot.planner.tick() {
             Action::Move(direction) => self.go(index, direction),
-            Action::Wait => Deed::Waited,
+            Action::Wait => match robot.planner.waiting() {
+                Some(Wait::Look(to)) => Deed::Looked(to),
+                _ => Deed::Waited,
+            },
             Action::Stop(stop) => Deed::Stopped(stop),
         }
     }
@@ -332,7 +332,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     }
 
     fn can_be_entered(&mut self, index: usize, cell: Cell) -> bool {
-        if !self.sensor.world().is_free(cell) {
+        if !self.senses.sensor().world().is_free(cell) {
             self.violations.push(Violation {
                 tick: self.tick,
                 robot: self.robots[index].id,
@@ -340,9 +340,8 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             });
             return false;
         }
-        let ticks = |closure: &Closure| closure.from..closure.until;
-        let mut closures = self.rules.faults.closures.iter();
-        !closures.any(|closure| closure.cell == cell && ticks(closure).contains(&self.tick))
+        let closures = &self.rules.faults.closures;
+        !closures.iter().any(|of| of.holds(cell, self.tick))
     }
 
     /// A robot wants the cell that another one holds: roles walk, bodies stay.
@@ -356,6 +355,13 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         };
         if !other.alive {
             return Meeting::Refused(Motion::Blocked);
+        }
+        // Who does not know where it is takes over no way from there.
+        if [index, holder]
+            .iter()
+            .any(|&of| !self.senses.has_pose(self.tick, of))
+        {
+            return Meeting::Refused(Motion::Held);
         }
         if other.has_exchanged {
             return Meeting::Refused(Motion::Held);

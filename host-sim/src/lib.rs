@@ -24,6 +24,7 @@ pub mod medium;
 pub mod peers;
 pub mod planners;
 pub mod run;
+pub mod senses;
 pub mod sensor;
 pub mod summary;
 pub mod survey;

@@ -53,6 +53,21 @@ pub struct Setup {
 }
 
 impl PlannerKind {
+    /// Whether it asks for looks in the directions that it needs: only such a planner
+    /// can explore with a sensor that does not look all around.
+    pub fn turns_sensor(self) -> bool {
+        match self {
+            Self::Explorer => true,
+            Self::LocalFrontiers
+            | Self::LocalFrontiersSecondChance
+            | Self::Closest
+            | Self::Greedy
+            | Self::MinPos
+            | Self::MinPosStrong
+            | Self::Bmilrv => false,
+        }
+    }
+
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {

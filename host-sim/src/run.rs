@@ -13,7 +13,8 @@ use crate::fleet::{Faults, Fleet, Rules, Sent, Violation};
 use crate::medium::{AirFaults, MediumKind};
 use crate::peers::{Bmilrv, Marks};
 use crate::planners::{PlannerKind, Setup};
-use crate::sensor::Sensor;
+use crate::senses::Senses;
+use crate::sensor::{ALL_AROUND, Sensor};
 use crate::trace::Trace;
 use crate::world::{Reachable, World};
 
@@ -31,6 +32,9 @@ pub struct Scenario {
     pub planner: PlannerKind,
     /// Sensor range in cells, 1 to 15.
     pub range: u8,
+    /// The sensor's field of view around the robot's heading, in degrees, 1 to
+    /// [`ALL_AROUND`]. Robots begin turned to the east.
+    pub fov: u16,
     /// What carries what robots tell each other.
     pub medium: MediumKind,
     /// Ticks between two exchanges among robots; 0: never.
@@ -64,6 +68,20 @@ pub enum ScenarioError {
     #[error("a sensor range of {0} cells; expected 1 to {max}", max = sight::MAX_RADIUS)]
     Range(u8),
     /// See the message.
+    #[error("a field of view of {0} degrees; expected 1 to {ALL_AROUND}")]
+    Fov(u16),
+    /// See the message.
+    #[error(
+        "planner {planner} never turns its sensor, and needs a field of view of {ALL_AROUND} \
+         degrees, not {fov}; the explorer turns it"
+    )]
+    NeverTurns {
+        /// What was to decide.
+        planner: PlannerKind,
+        /// With what field of view.
+        fov: u16,
+    },
+    /// See the message.
     #[error("a share of {share} for {name}; expected 0 (none) to 1 (all)")]
     Share {
         /// Of what.
@@ -83,6 +101,16 @@ pub enum ScenarioError {
         start: Cell,
     },
     /// See the message.
+    #[error("a {what} cell at {cell}, outside of the map of {extent} cells")]
+    FaultOutside {
+        /// Closed or blind.
+        what: &'static str,
+        /// Which cell.
+        cell: Cell,
+        /// Size of the map.
+        extent: Extent,
+    },
+    /// See the message.
     #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]
     SharedStart {
         /// Index of the one.
@@ -95,7 +123,7 @@ pub enum ScenarioError {
 }
 
 impl Scenario {
-    /// A scenario with the defaults: sensor range 5, the ideal medium with an
+    /// A scenario with the defaults: sensor range 5 all around, the ideal medium with an
     /// exchange in every tick, shared cells, seed 0, no faults, and ticks enough
     /// for any planner that gets anywhere.
     pub fn new(world: Arc<World>, starts: Vec<Cell>, planner: PlannerKind) -> Self {
@@ -105,6 +133,7 @@ impl Scenario {
             starts,
             planner,
             range: 5,
+            fov: ALL_AROUND,
             medium: MediumKind::Ideal,
             sync: 1,
             byte_budget: MAX_LEN as u16,
@@ -130,6 +159,16 @@ impl Scenario {
         if !(1..=sight::MAX_RADIUS).contains(&self.range) {
             return Err(ScenarioError::Range(self.range));
         }
+        if !(1..=ALL_AROUND).contains(&self.fov) {
+            return Err(ScenarioError::Fov(self.fov));
+        }
+        if self.fov < ALL_AROUND && !self.planner.turns_sensor() {
+            return Err(ScenarioError::NeverTurns {
+                planner: self.planner,
+                fov: self.fov,
+            });
+        }
+        self.check_fault_cells()?;
         for (name, share) in [
             ("loss", self.loss),
             ("duplication", self.air.duplication),
@@ -163,6 +202,30 @@ impl Scenario {
             }
         }
         Ok(())
+    }
+
+    fn check_fault_cells(&self) -> Result<(), ScenarioError> {
+        let extent = self.world.extent();
+        let closed = self.faults.closures.iter().map(|of| ("closed", of.cell));
+        let blind = self.faults.blind.iter().map(|of| ("blind", of.cell));
+        match closed
+            .chain(blind)
+            .find(|(_, cell)| !extent.contains(*cell))
+        {
+            None => Ok(()),
+            Some((what, cell)) => Err(ScenarioError::FaultOutside { what, cell, extent }),
+        }
+    }
+
+    /// The sensor that its robots carry.
+    pub fn sensor(&self) -> Arc<Sensor> {
+        let world = self.world.clone();
+        Arc::new(Sensor::with_fov(world, self.range, self.fov))
+    }
+
+    /// What its robots see, before the first tick; `sensor` is the scenario's.
+    pub fn senses(&self, sensor: Arc<Sensor>) -> Senses {
+        Senses::new(sensor, &self.faults, self.starts.len())
     }
 }
 
@@ -305,7 +368,7 @@ pub struct Progress {
 /// How a scenario is run; changes nothing of what happens.
 #[derive(Default)]
 pub struct Options<'a> {
-    /// A sensor of the scenario's world and range that other runs have filled.
+    /// A sensor of the scenario's world, range and field of view that other runs have filled.
     pub sensor: Option<Arc<Sensor>>,
     /// Whether a trace is kept.
     pub trace: bool,
@@ -360,8 +423,7 @@ pub fn run(
 }
 
 /// A scenario before its first tick, for whoever wants to watch: the same run tick
-/// by tick, with a trace. `sensor` is one of the scenario's world and range, if there is
-/// one already.
+/// by tick, with a trace. `sensor` is one of the scenario's, if there is one already.
 ///
 /// # Errors
 /// A scenario out of range.

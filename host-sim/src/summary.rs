@@ -44,6 +44,8 @@ pub struct Summary {
     pub planner: PlannerKind,
     /// Sensor range in cells.
     pub range: u8,
+    /// Field of view in degrees.
+    pub fov: u16,
     /// What carried what robots told each other.
     pub medium: MediumKind,
     /// Ticks between two exchanges; 0: never.
@@ -121,6 +123,7 @@ impl Summary {
             map: scenario.world.name().into(),
             planner: scenario.planner,
             range: scenario.range,
+            fov: scenario.fov,
             medium: scenario.medium,
             sync: scenario.sync,
             byte_budget: scenario.byte_budget,

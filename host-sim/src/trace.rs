@@ -48,7 +48,8 @@ pub struct Record {
     /// 0 to 3: moved east, south, west, north; 4 to 7: tried to, and was
     /// blocked; 8 to 11: and was held by a robot that goes first; 12 to 15: and
     /// exchanged roles with the robot there. 16: waited; 17: gave its role away
-    /// before it had acted. From 32 on: had stopped, 32 and
+    /// before it had acted; 18 to 21: turned its sensor to the east, south, west,
+    /// north. From 32 on: had stopped, 32 and
     /// [`Stop::code`](planner_core::Stop::code).
     pub action: u8,
     /// Where it was going; in the file and the digest -1, -1 for nowhere.
@@ -63,6 +64,7 @@ pub struct Record {
 
 const WAITED: u8 = 16;
 const YIELDED: u8 = 17;
+const LOOKED: u8 = 18;
 const STOPPED: u8 = 32;
 const NOWHERE: Cell = Cell::new(-1, -1);
 
@@ -80,6 +82,7 @@ impl Record {
             Deed::Exchanged(direction) => 12 + direction as u8,
             Deed::Waited => WAITED,
             Deed::Yielded => YIELDED,
+            Deed::Looked(direction) => LOOKED + direction as u8,
             Deed::Stopped(stop) => STOPPED + stop.code(),
         };
         Self {
@@ -100,6 +103,21 @@ impl Record {
             0..4 => self.at.step(Direction::from_index(self.action)),
             _ => self.at,
         }
+    }
+
+    /// Which way the robot turned by what it did; `None`: it did not.
+    pub fn turns_to(&self) -> Option<Direction> {
+        const TURNED: u8 = LOOKED + 4;
+        match self.action {
+            0..WAITED => Some(Direction::from_index(self.action)),
+            LOOKED..TURNED => Some(Direction::from_index(self.action - LOOKED)),
+            _ => None,
+        }
+    }
+
+    /// Where the robot turned its sensor instead of going anywhere.
+    pub fn looked(&self) -> Option<Direction> {
+        self.turns_to().filter(|_| self.action >= LOOKED)
     }
 
     /// Whether the robot had stopped.

@@ -78,6 +78,52 @@ fn faults_by_option_happen() {
     );
 }
 
+/// A corridor of eight cells, of which a robot sees two ahead.
+const CORRIDOR: [&str; 4] = ["explore", "corridor.txt", "--robots=1", "--range=2"];
+
+#[test]
+fn cells_and_senses_fail_by_option() {
+    let folder = folder();
+    let corridor = "##########\n#1.......#\n##########\n";
+    fs::write(folder.path().join("corridor.txt"), corridor).unwrap();
+    let run = |code: i32, arguments: &[&str]| -> Value {
+        let arguments = [&CORRIDOR[..], &["--json"], arguments].concat();
+        let output = host_sim(folder.path(), &arguments).assert().code(code);
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let stopped = |summary: &Value| summary["ticks_to_stopped"].as_u64().unwrap();
+    let usual = run(0, &[]);
+    assert_eq!(usual["fov"], 360);
+    let closed = run(0, &["--close=4,1@0-30"]);
+    assert!(closed["robots"][0]["blocked_steps"].as_u64() > Some(0));
+    assert!(stopped(&closed) >= 30);
+    // What is seen past the silent cell is seen; of itself nobody is told.
+    let blind = run(0, &["--blind=4,0", "--max-ticks=200"]);
+    assert_ne!(blind["trace_digest"], usual["trace_digest"]);
+    assert_eq!(blind["seen_cells"], 8);
+    let deaf = run(1, &["--sensor-fails=0@0", "--max-ticks=200"]);
+    assert!(deaf["seen_cells"].as_u64() < Some(8));
+    let resumed = run(0, &["--resume=0@50"]);
+    assert_eq!(stopped(&resumed), 50);
+    assert_eq!(resumed["robots"][0]["stop"], "complete");
+    // Nothing is decided without a pose.
+    let closest = run(0, &["--planner=closest"]);
+    let lost = run(0, &["--planner=closest", "--pose-lost=0@2-12"]);
+    assert_eq!(stopped(&lost), stopped(&closest) + 10);
+    assert_eq!(lost["robots"][0]["steps"], closest["robots"][0]["steps"]);
+}
+
+#[test]
+fn a_map_that_ends_at_free_cells_says_so_and_counts_as_complete() {
+    let folder = folder();
+    fs::write(folder.path().join("open.txt"), "1...\n####\n").unwrap();
+    let output = host_sim(folder.path(), &["explore", "open.txt", "--robots=1"])
+        .assert()
+        .success();
+    let text = String::from_utf8_lossy(&output.get_output().stdout).into_owned();
+    assert!(text.contains("the world may go on"), "{text}");
+}
+
 #[test]
 fn a_complete_run_leaves_its_files_and_exits_with_0() {
     let folder = folder();
@@ -225,6 +271,22 @@ fn bad_options_are_named() {
     bad(&["--solid", "--robots", "29"], &["29", "28", "--solid"]);
     bad(&["--robots", "0"], &["--robots"]);
     bad(&["--range", "16"], &["--range", "1..=15"]);
+    bad(&["--fov", "0"], &["--fov", "1..=360"]);
+    bad(
+        &["--fov", "90", "--planner", "minpos"],
+        &["minpos never turns", "360", "90"],
+    );
+    bad(&["--close", "99,1"], &["closed cell at 99,1", "12×5"]);
+    bad(&["--blind", "3"], &["--blind", "X,Y@FROM-UNTIL"]);
+    bad(
+        &["--pose-lost", "0@9-3"],
+        &["--pose-lost", "ROBOT@FROM-UNTIL"],
+    );
+    bad(&["--pose-lost", "3@1-4"], &["--pose-lost", "no robot 3"]);
+    bad(
+        &["--sensor-fails", "7@1"],
+        &["--sensor-fails", "no robot 7"],
+    );
     bad(&["--loss", "60"], &["--loss", "0 (nothing) to 1"]);
     bad(&["--corrupt", "2"], &["--corrupt", "0 (nothing) to 1"]);
     bad(&["--radio-range", "far"], &["--radio-range", "all, sight"]);

@@ -3,13 +3,17 @@
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use host_sim::fleet::{Closure, Death, Deed, Faults};
-use host_sim::planners::PlannerKind;
-use host_sim::run::{self, Options, Outcome, Scenario, ScenarioError, run_compiled};
+use host_sim::draw;
+use host_sim::fleet::{Blind, Closure, Death, Deed, Faults, LostPose, Resume, SensorFailure};
+use host_sim::planners::{PlannerKind, Setup};
+use host_sim::run::{self, Host, Options, Outcome, Scenario, ScenarioError, run_compiled};
 use host_sim::sensor::Sensor;
 use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, World, generate};
-use planner_core::{Cell, RobotId};
+use planner_core::radio::{FrameError, Heard, MAX_LEN};
+use planner_core::{
+    Action, Cell, Direction, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
+};
 
 fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
     let world = Arc::new(generate(family, 31, 24, seed).unwrap());
@@ -156,6 +160,224 @@ fn solid_robots_never_share_a_cell_and_finish_in_a_maze() {
     assert!(fleet.violations().is_empty());
 }
 
+/// Looks in all four directions from every cell that it comes to, then does what the
+/// planner within decides.
+struct LooksAround<const TW: usize, const TH: usize> {
+    inner: Box<dyn Planner<TW, TH>>,
+    at: Option<Cell>,
+    to_come: std::slice::Iter<'static, Direction>,
+    look: Option<Wait>,
+}
+
+impl<const TW: usize, const TH: usize> Planner<TW, TH> for LooksAround<TW, TH> {
+    fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        if self.at != Some(sighting.centre()) {
+            self.at = Some(sighting.centre());
+            self.to_come = Direction::ALL.iter();
+        }
+        self.inner.observe(sighting)
+    }
+
+    fn tick(&mut self) -> Action {
+        self.look = self.to_come.next().copied().map(Wait::Look);
+        match self.look {
+            Some(_) => Action::Wait,
+            None => self.inner.tick(),
+        }
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        self.look.or_else(|| self.inner.waiting())
+    }
+
+    fn resume(&mut self) {
+        self.inner.resume();
+    }
+
+    fn report(&mut self, motion: Motion) {
+        self.inner.report(motion);
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        self.inner.transmit(buffer)
+    }
+
+    fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+        self.inner.receive(bytes)
+    }
+
+    fn map(&self) -> &Map<TW, TH> {
+        self.inner.map()
+    }
+
+    fn status(&self) -> Status {
+        self.inner.status()
+    }
+
+    fn take_changed(&mut self) -> TileSet<TH> {
+        self.inner.take_changed()
+    }
+
+    fn join(&mut self, other: &Map<TW, TH>, tiles: &TileSet<TH>) -> Learnt {
+        self.inner.join(other, tiles)
+    }
+
+    fn hear(&mut self, id: RobotId, status: Status) {
+        self.inner.hear(id, status);
+    }
+
+    fn work(&self) -> u32 {
+        self.inner.work()
+    }
+}
+
+/// Robots that look around.
+#[derive(Clone)]
+struct LookingAround;
+
+impl Host for LookingAround {
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        kind: PlannerKind,
+        setup: Setup,
+    ) -> Box<dyn Planner<TW, TH>> {
+        Box::new(LooksAround {
+            inner: kind.build(setup).unwrap(),
+            at: None,
+            to_come: Direction::ALL.iter(),
+            look: None,
+        })
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
+#[test]
+fn robots_that_turn_see_everything_with_any_field_of_view() {
+    for (fov, family) in [1, 62, 90, 180, 360].into_iter().zip(Family::ALL) {
+        let mut scenario = scenario(PlannerKind::Explorer, family, 6);
+        scenario.fov = fov;
+        scenario.max_ticks *= 5;
+        let (outcome, trace) = run::run_on(&LookingAround, &scenario, traced()).unwrap();
+        let trace = trace.unwrap();
+        assert!(outcome.is_complete(), "{fov} degrees in {family}");
+        for robot in &outcome.robots {
+            assert!(
+                robot.stop.unwrap().is_complete(),
+                "{fov} degrees in {family}"
+            );
+            assert_eq!(robot.cells_missed, 0, "{fov} degrees in {family}");
+        }
+        for direction in Direction::ALL {
+            let looked = |record: &&host_sim::trace::Record| record.looked() == Some(direction);
+            assert!(trace.records.iter().any(|record| looked(&record)));
+        }
+        // Whoever follows the trace sees what the robots saw.
+        let mut replay = draw::Replay::new(&trace);
+        while replay.tick() {}
+        assert_eq!(replay.seen_cells(), outcome.seen_cells);
+    }
+}
+
+#[test]
+fn nothing_is_seen_beside_a_narrow_field_of_view() {
+    let world = World::from_fn("open", planner_core::Extent::new(20, 9), |_| false);
+    let start = Cell::new(4, 4);
+    let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
+    (scenario.fov, scenario.range, scenario.max_ticks) = (62, 3, 1);
+    let mut running = run::open(&scenario, None).unwrap();
+    running.tick();
+    // To the east, five cells and the own one.
+    let seen = running.robot(0);
+    assert_eq!((seen.heading, seen.known_cells), (Direction::East, 6));
+    assert_eq!(running.outcome().seen_cells, 6);
+}
+
+#[test]
+fn a_robot_without_a_pose_learns_nothing_and_goes_on_afterwards() {
+    for &planner in PlannerKind::value_variants() {
+        // It has its tests in tests/completeness.rs.
+        if planner == PlannerKind::Explorer {
+            continue;
+        }
+        let mut scenario = scenario(planner, Family::Rooms, 4);
+        scenario.sync = 0;
+        scenario.faults.lost_poses = (0..4)
+            .map(|robot| LostPose {
+                robot: RobotId(robot),
+                from: 3,
+                until: 20,
+            })
+            .collect();
+        let mut running = run::open(&scenario, None).unwrap();
+        let mut known = Vec::new();
+        for tick in 0..22 {
+            let before: Vec<_> = (0..4).map(|id| running.robot(id).known_cells).collect();
+            running.tick();
+            let moved = |id| matches!(running.robot(id).step.unwrap().deed, Deed::Moved(_));
+            if (3..20).contains(&tick) {
+                assert!(!(0..4).any(moved), "{planner} in tick {tick}");
+                let now: Vec<_> = (0..4).map(|id| running.robot(id).known_cells).collect();
+                assert_eq!(now, before, "{planner} in tick {tick}");
+            } else {
+                known.push((0..4).any(moved));
+            }
+        }
+        assert!(known[3..].iter().any(|&moved| moved), "{planner}");
+    }
+}
+
+#[test]
+fn what_no_look_shows_counts_as_unseen() {
+    let world = World::from_fn("corridor", planner_core::Extent::new(12, 3), |cell| {
+        cell.y != 1 || cell.x == 0 || cell.x == 11
+    });
+    let start = Cell::new(2, 1);
+    let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
+    scenario.max_ticks = 300;
+    let mut outcome = |faults: Faults| {
+        scenario.faults = faults;
+        run(&scenario).0
+    };
+    let glass = |cell| Faults {
+        blind: vec![Blind {
+            cell,
+            from: 0,
+            until: u32::MAX,
+        }],
+        ..Faults::default()
+    };
+    // Of a wall's cell nobody knows; all free cells are seen.
+    let wall = outcome(glass(Cell::new(5, 0)));
+    assert_eq!((wall.seen_cells, wall.ticks_to_seen.is_some()), (10, true));
+    let silent = outcome(Faults {
+        sensor_failures: vec![SensorFailure {
+            robot: RobotId(0),
+            tick: 0,
+        }],
+        ..Faults::default()
+    });
+    assert_eq!(silent.ticks_to_seen, None);
+    assert_eq!(silent.robots[0].cells_missed, 9);
+}
+
+#[test]
+fn a_run_goes_on_when_a_robot_is_told_to_and_ends_anew() {
+    let mut scenario = scenario(PlannerKind::Closest, Family::Rooms, 9);
+    let (before, trace) = run(&scenario);
+    let end = before.ticks;
+    scenario.faults.resumes = vec![Resume {
+        robot: RobotId(1),
+        tick: end + 5,
+    }];
+    let (outcome, again) = run(&scenario);
+    assert!(again.records.starts_with(&trace.records));
+    assert_eq!(outcome.ticks, end + 6);
+    assert!(outcome.robots.iter().all(|robot| robot.stop.is_some()));
+}
+
 #[test]
 fn a_scenario_out_of_range_is_an_error() {
     let good = scenario(PlannerKind::Closest, Family::Open, 1);
@@ -173,6 +395,15 @@ fn a_scenario_out_of_range_is_an_error() {
         }
     );
     assert_eq!(check(&|s| s.starts.clear()), ScenarioError::Robots(0));
+    assert_eq!(check(&|s| s.fov = 361), ScenarioError::Fov(361));
+    let error = check(&|s| s.fov = 180);
+    assert_eq!(
+        error,
+        ScenarioError::NeverTurns {
+            planner: PlannerKind::Closest,
+            fov: 180
+        }
+    );
     let outside = Cell::new(-1, 0);
     let error = check(&|s| s.starts[1] = outside);
     assert_eq!(

@@ -1,6 +1,6 @@
 //! The lab: what is set, what runs, and what is shown.
 
-use host_sim::fleet::{Arrival, Death};
+use host_sim::fleet::{Arrival, Death, Faults, Resume};
 use host_sim::planners::PlannerKind;
 use host_sim::trace::Trace;
 use host_sim::world::Starts;
@@ -226,8 +226,7 @@ impl App {
                 self.set(Setup {
                     map,
                     starts: (!starts.is_empty()).then_some(Starts::At(starts)),
-                    deaths: Vec::new(),
-                    arrivals: Vec::new(),
+                    faults: Faults::default(),
                     ..self.setup.clone()
                 });
             }
@@ -451,7 +450,7 @@ impl App {
         };
         if tick > 0 {
             let robot = RobotId(robots - 1);
-            setup.arrivals.push(Arrival { robot, tick });
+            setup.faults.arrivals.push(Arrival { robot, tick });
         }
         self.set_at(setup, (tick > 0).then_some(tick));
     }
@@ -461,12 +460,31 @@ impl App {
         let tick = self.shown_tick();
         let Ok(id) = u8::try_from(robot) else { return };
         let mut setup = self.setup.clone();
-        setup.deaths.retain(|death| death.robot.0 != id);
-        setup.deaths.push(Death {
+        let deaths = &mut setup.faults.deaths;
+        deaths.retain(|death| death.robot.0 != id);
+        deaths.push(Death {
             robot: RobotId(id),
             tick,
         });
         self.set_at(setup, Some(tick));
+    }
+
+    /// From the shown tick on, the robot, or every one, goes on after its stop.
+    pub fn go_on(&mut self, robot: Option<usize>) {
+        let tick = self.shown_tick();
+        let mut setup = self.setup.clone();
+        let is_meant = |id: u8| robot.is_none_or(|robot| usize::from(id) == robot);
+        let resumes = &mut setup.faults.resumes;
+        resumes.retain(|of| of.tick < tick || !is_meant(of.robot.0));
+        resumes.extend(
+            (0..setup.robots)
+                .filter(|&id| is_meant(id))
+                .map(|id| Resume {
+                    robot: RobotId(id),
+                    tick,
+                }),
+        );
+        self.playing |= self.set_at(setup, Some(tick));
     }
 
     /// Reads what the page around the lab should know.
@@ -548,6 +566,54 @@ mod tests {
         let own = app.runs[0].watch.records().iter().find(|it| it.robot == 2);
         assert_eq!(own.unwrap().tick, 15);
         assert_eq!(app.report().state, "complete");
+    }
+
+    #[test]
+    fn a_robot_that_stopped_is_told_to_go_on_by_the_command_too() {
+        let mut app = app();
+        finish(&mut app);
+        let (end, digest) = (app.last_tick(), app.report().digest);
+        app.go_on(Some(1));
+        let line = format!("--robots 2 --resume 1@{end}");
+        assert!(
+            app.setup.command().ends_with(&line),
+            "{}",
+            app.setup.command()
+        );
+        app.advance(0.0);
+        app.playing = false;
+        assert_eq!(app.shown_tick(), end);
+        finish(&mut app);
+        assert!(app.last_tick() > end);
+        assert_eq!(app.report().state, "complete");
+        assert_ne!(app.report().digest, digest);
+        app.go_on(None);
+        let resumes = &app.setup.faults.resumes;
+        assert_eq!(resumes.len(), 3, "{resumes:?}");
+    }
+
+    #[test]
+    fn a_trace_with_faults_of_senses_is_replayed_and_run_again() {
+        let address = "map=generate:rooms:24x24:2&robots=2&close=3,3@0-40&blind=0,5\
+                       &sensor-fails=1@30&pose-lost=0@8-12";
+        let mut app = App::from_address(address);
+        for _ in 0..60 {
+            app.tick();
+        }
+        let bytes = crate::export::trace(&app.runs[0].watch.trace()).unwrap();
+        let mut other = App::new(Setup::default());
+        other.open("trace.csv", &bytes);
+        assert_eq!(other.setup.faults, app.setup.faults);
+        other.show(50);
+        app.show(50);
+        assert_eq!(
+            other.runs[0].watch.seen_cells(),
+            app.runs[0].watch.seen_cells()
+        );
+        let watch = &mut other.runs[0].watch;
+        watch.catch_up(|| true);
+        assert_eq!(watch.differs(), None);
+        assert!(watch.state().is_some());
     }
 
     #[test]

@@ -43,8 +43,14 @@ pub fn decisions(watch: &Watch, robot: usize, most: usize) -> Vec<Decision> {
             17 => say("gives its role to a robot that wanted its cell".into()),
             _ => {}
         }
+        if let Some(way) = record.looked() {
+            say(format!("looks {}", name(way)));
+        }
         if record.has_stopped() && !stopped {
             say(stop(record.action).into());
+        }
+        if stopped && !record.has_stopped() {
+            say("is told to go on".into());
         }
         stopped = record.has_stopped();
         if let Some(next) = record.goal.filter(|&next| goal != Some(next)) {

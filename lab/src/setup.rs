@@ -4,13 +4,14 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use host_sim::fleet::{Arrival, Death};
+use host_sim::fleet::Faults;
 use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
 use host_sim::run::Scenario;
+use host_sim::sensor::ALL_AROUND;
 use host_sim::world::{Starts, World};
+use planner_core::Cell;
 use planner_core::radio::MAX_LEN;
-use planner_core::{Cell, RobotId};
 
 use crate::maps::Map;
 
@@ -27,6 +28,8 @@ pub struct Setup {
     pub starts: Option<Starts>,
     /// Sensor range in cells.
     pub range: u8,
+    /// Its field of view in degrees.
+    pub fov: u16,
     /// What carries what robots tell each other.
     pub medium: MediumKind,
     /// Ticks between two exchanges; 0: never.
@@ -43,10 +46,8 @@ pub struct Setup {
     pub seed: u64,
     /// A cell holds at most one robot.
     pub solid: bool,
-    /// Robots that die.
-    pub deaths: Vec<Death>,
-    /// Robots that come late.
-    pub arrivals: Vec<Arrival>,
+    /// What happens to robots and cells.
+    pub faults: Faults,
 }
 
 impl Default for Setup {
@@ -57,6 +58,7 @@ impl Default for Setup {
             robots: 3,
             starts: None,
             range: 5,
+            fov: ALL_AROUND,
             medium: MediumKind::Radio,
             sync: 1,
             loss: 0.0,
@@ -65,8 +67,7 @@ impl Default for Setup {
             byte_budget: MAX_LEN as u16,
             seed: 1,
             solid: false,
-            deaths: Vec::new(),
-            arrivals: Vec::new(),
+            faults: Faults::default(),
         }
     }
 }
@@ -87,6 +88,7 @@ impl Setup {
             .map_err(|error| error.to_string())?;
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
+        scenario.fov = self.fov;
         scenario.medium = self.medium;
         scenario.sync = self.sync;
         scenario.loss = self.loss;
@@ -95,8 +97,7 @@ impl Setup {
         scenario.byte_budget = self.byte_budget;
         scenario.seed = self.seed;
         scenario.solid = self.solid;
-        scenario.faults.deaths.clone_from(&self.deaths);
-        scenario.faults.arrivals.clone_from(&self.arrivals);
+        scenario.faults.clone_from(&self.faults);
         scenario.check().map_err(|error| error.to_string())?;
         Ok(scenario)
     }
@@ -109,6 +110,7 @@ impl Setup {
             robots: scenario.starts.len().min(255) as u8,
             starts: Some(Starts::At(scenario.starts.clone())),
             range: scenario.range,
+            fov: scenario.fov,
             medium: scenario.medium,
             sync: scenario.sync,
             loss: scenario.loss,
@@ -117,8 +119,7 @@ impl Setup {
             byte_budget: scenario.byte_budget,
             seed: scenario.seed,
             solid: scenario.solid,
-            deaths: scenario.faults.deaths.clone(),
-            arrivals: scenario.faults.arrivals.clone(),
+            faults: scenario.faults.clone(),
         }
     }
 
@@ -153,6 +154,7 @@ impl Setup {
             }
         }
         say(self.range != usual.range, "range", self.range.to_string());
+        say(self.fov != usual.fov, "fov", self.fov.to_string());
         say(
             self.medium != usual.medium,
             "medium",
@@ -175,12 +177,7 @@ impl Setup {
         );
         say(self.seed != usual.seed, "seed", self.seed.to_string());
         say(self.solid, "solid", String::new());
-        for Death { robot, tick } in &self.deaths {
-            say(true, "kill", format!("{}@{tick}", robot.0));
-        }
-        for Arrival { robot, tick } in &self.arrivals {
-            say(true, "late", format!("{}@{tick}", robot.0));
-        }
+        settings.extend(fault_settings(&self.faults));
         settings
     }
 
@@ -263,6 +260,7 @@ impl Setup {
                     _ => starts.push(cell(value).ok_or_else(wrong)?),
                 },
                 "range" => setup.range = value.parse().map_err(|_| wrong())?,
+                "fov" => setup.fov = value.parse().map_err(|_| wrong())?,
                 "medium" => {
                     use clap::ValueEnum;
                     setup.medium = MediumKind::from_str(value, true).map_err(|_| wrong())?;
@@ -280,15 +278,7 @@ impl Setup {
                 "byte-budget" => setup.byte_budget = value.parse().map_err(|_| wrong())?,
                 "seed" => setup.seed = value.parse().map_err(|_| wrong())?,
                 "solid" => setup.solid = true,
-                "kill" => {
-                    let (robot, tick) = moment(value).ok_or_else(wrong)?;
-                    setup.deaths.push(Death { robot, tick });
-                }
-                "late" => {
-                    let (robot, tick) = moment(value).ok_or_else(wrong)?;
-                    setup.arrivals.push(Arrival { robot, tick });
-                }
-                _ => return Err(wrong()),
+                _ => add_fault(&mut setup.faults, name, value).ok_or_else(wrong)?,
             }
         }
         if seeded {
@@ -336,9 +326,39 @@ fn cell(text: &str) -> Option<Cell> {
     Some(Cell::new(x.parse().ok()?, y.parse().ok()?))
 }
 
-fn moment(text: &str) -> Option<(RobotId, u32)> {
-    let (robot, tick) = text.split_once('@')?;
-    Some((RobotId(robot.parse().ok()?), tick.parse().ok()?))
+/// The faults under the names that `host-sim explore` has for them.
+fn fault_settings(faults: &Faults) -> Vec<(&'static str, String)> {
+    fn all<T: ToString>(
+        name: &'static str,
+        faults: &[T],
+    ) -> impl Iterator<Item = (&'static str, String)> {
+        faults.iter().map(move |of| (name, of.to_string()))
+    }
+    all("kill", &faults.deaths)
+        .chain(all("late", &faults.arrivals))
+        .chain(all("restart", &faults.restarts))
+        .chain(all("resume", &faults.resumes))
+        .chain(all("close", &faults.closures))
+        .chain(all("blind", &faults.blind))
+        .chain(all("sensor-fails", &faults.sensor_failures))
+        .chain(all("pose-lost", &faults.lost_poses))
+        .collect()
+}
+
+/// Adds one of [`fault_settings`]; `None`: it is not understood.
+fn add_fault(faults: &mut Faults, name: &str, value: &str) -> Option<()> {
+    match name {
+        "kill" => faults.deaths.push(value.parse().ok()?),
+        "late" => faults.arrivals.push(value.parse().ok()?),
+        "restart" => faults.restarts.push(value.parse().ok()?),
+        "resume" => faults.resumes.push(value.parse().ok()?),
+        "close" => faults.closures.push(value.parse().ok()?),
+        "blind" => faults.blind.push(value.parse().ok()?),
+        "sensor-fails" => faults.sensor_failures.push(value.parse().ok()?),
+        "pose-lost" => faults.lost_poses.push(value.parse().ok()?),
+        _ => return None,
+    }
+    Some(())
 }
 
 #[cfg(test)]
@@ -357,6 +377,7 @@ mod tests {
             robots: 4,
             starts: Some(Starts::Corner),
             range: 6,
+            fov: ALL_AROUND,
             medium: MediumKind::Ideal,
             sync: 3,
             loss: 0.25,
@@ -365,14 +386,16 @@ mod tests {
             byte_budget: 30,
             seed: 5,
             solid: true,
-            deaths: vec![Death {
-                robot: RobotId(1),
-                tick: 40,
-            }],
-            arrivals: vec![Arrival {
-                robot: RobotId(3),
-                tick: 12,
-            }],
+            faults: Faults {
+                deaths: vec!["1@40".parse().unwrap()],
+                arrivals: vec!["3@12".parse().unwrap()],
+                restarts: vec!["0@60".parse().unwrap()],
+                resumes: vec!["2@90".parse().unwrap()],
+                closures: vec!["4,5@9-20".parse().unwrap()],
+                blind: vec!["6,7".parse().unwrap()],
+                sensor_failures: vec!["1@30".parse().unwrap()],
+                lost_poses: vec!["0@5-9".parse().unwrap()],
+            },
         }
     }
 
@@ -385,7 +408,12 @@ mod tests {
             map: Map::Given(drawn),
             ..unusual()
         };
-        for setup in [Setup::default(), unusual(), given] {
+        let narrow = Setup {
+            fov: 62,
+            ..Setup::default()
+        };
+        assert!(narrow.command().ends_with(" --fov 62"));
+        for setup in [Setup::default(), unusual(), given, narrow] {
             let back = Setup::from_address(&setup.address()).unwrap();
             assert_eq!(back.address(), setup.address());
             assert_eq!(back, setup);
@@ -399,6 +427,8 @@ mod tests {
             ("map=nowhere", "nowhere"),
             ("map=generate:rooms:4", "rooms:4"),
             ("colour=red", "colour=red"),
+            ("fov=wide", "fov=wide"),
+            ("blind=3", "blind=3"),
         ] {
             let error = Setup::from_address(address).unwrap_err();
             assert!(error.contains(part), "{error}");
@@ -418,7 +448,8 @@ mod tests {
         assert!(command.ends_with(
             "explore rooms-7.txt --planner minpos --robots 4 --start corner --range 6 \
              --medium ideal --sync 3 --loss 0.25 --radio-range 9 --delay 2 --byte-budget 30 --seed 5 \
-             --solid --kill 1@40 --late 3@12"
+             --solid --kill 1@40 --late 3@12 --restart 0@60 --resume 2@90 --close 4,5@9-20 \
+             --blind 6,7 --sensor-fails 1@30 --pose-lost 0@5-9"
         ));
     }
 }

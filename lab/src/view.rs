@@ -7,6 +7,7 @@ use egui::{
 };
 use host_sim::medium::{Fate, Message};
 use host_sim::run::Stepping;
+use host_sim::sensor::ALL_AROUND;
 use planner_core::{Cell, Extent, RobotId};
 
 use crate::colors::{Colors, mix};
@@ -142,6 +143,7 @@ impl View {
             painter.image(texture.id(), place.map(), uv, Color32::WHITE);
         }
         painter.extend(marks(frame, &place, &colors));
+        painter.extend(sectors(frame, &place, &colors));
         paint_robots(&painter, frame, &place, &colors);
         response.widget_info(|| {
             let about = format!("map, {} robots", frame.watch.scenario().starts.len());
@@ -513,6 +515,28 @@ fn messages(frame: &Frame<'_>, state: &dyn Stepping, place: &Place, colors: &Col
         }
     }
     shapes
+}
+
+/// What each robot's sensor looks at, if it does not look all around.
+fn sectors(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
+    let scenario = frame.watch.scenario();
+    let Some(state) = frame.watch.state().filter(|_| scenario.fov < ALL_AROUND) else {
+        return Vec::new();
+    };
+    let half = f32::from(scenario.fov).to_radians() / 2.0;
+    let radius = f32::from(scenario.range) * place.scale;
+    let sector = |robot: usize| {
+        let seen = state.robot(robot);
+        let (x, y) = seen.heading.delta();
+        let ahead = vec2(x.into(), y.into()).angle();
+        let middle = place.middle(seen.position);
+        let arc = (-8..=8).map(|part| ahead + half * part as f32 / 8.0);
+        let arc = arc.map(|angle| middle + Vec2::angled(angle) * radius);
+        let edge = std::iter::once(middle).chain(arc).collect();
+        let stroke = Stroke::new(1.0, robot_color(frame, colors, robot));
+        (seen.alive && seen.is_there).then(|| Shape::closed_line(edge, stroke))
+    };
+    (0..scenario.starts.len()).filter_map(sector).collect()
 }
 
 fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, colors: &Colors) {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use host_sim::run::{self, Outcome, Scenario, Stepping};
+use host_sim::senses::Senses;
 use host_sim::sensor::Sensor;
 use host_sim::trace::{Record, Trace};
 use host_sim::world::Reachable;
@@ -17,6 +18,8 @@ pub const NEVER: u32 = u32::MAX;
 pub struct Watch {
     scenario: Scenario,
     sensor: Arc<Sensor>,
+    /// Those of the robots at the last tick done.
+    senses: Senses,
     reachable: Reachable,
     source: Source,
     /// The run once more, up to the tick that is shown, if that is not the last.
@@ -87,7 +90,7 @@ impl Watch {
     /// # Errors
     /// A scenario that cannot be run, in a sentence for the user.
     pub fn new(scenario: Scenario) -> Result<Self, String> {
-        let sensor = Arc::new(Sensor::new(scenario.world.clone(), scenario.range));
+        let sensor = scenario.sensor();
         let mut running = run::open(&scenario, Some(sensor.clone())).map_err(|e| e.to_string())?;
         running.listen();
         Ok(Self::with(scenario, sensor, Source::Running(running)))
@@ -96,14 +99,14 @@ impl Watch {
     /// A trace that was opened, at its first tick.
     pub fn replay(trace: Trace) -> Self {
         let scenario = trace.scenario.clone();
-        let sensor = Arc::new(Sensor::new(scenario.world.clone(), scenario.range));
+        let sensor = scenario.sensor();
         let mut watch = Self::with(scenario, sensor, Source::Opened(Box::new(trace)));
         let Source::Opened(trace) = &watch.source else {
             unreachable!("it was just set");
         };
         watch
             .history
-            .note(&trace.records, &watch.sensor, &watch.reachable);
+            .note(&trace.records, &mut watch.senses, &watch.reachable);
         watch
     }
 
@@ -117,6 +120,7 @@ impl Watch {
                 visited_since: vec![NEVER; cells],
                 ..History::default()
             },
+            senses: scenario.senses(sensor.clone()),
             scenario,
             sensor,
             source,
@@ -138,7 +142,7 @@ impl Watch {
         let begin = running.records().len();
         if running.tick() {
             let news = &running.records()[begin..];
-            self.history.note(news, &self.sensor, &self.reachable);
+            self.history.note(news, &mut self.senses, &self.reachable);
             // A tick in which nobody lives has no record.
             self.history.fill(running.progress().ticks);
             self.shown = running.progress().ticks;
@@ -378,8 +382,8 @@ impl Watch {
 
 impl History {
     /// Takes in the records of whole ticks.
-    fn note(&mut self, records: &[Record], sensor: &Sensor, reachable: &Reachable) {
-        let extent = sensor.world().extent();
+    fn note(&mut self, records: &[Record], senses: &mut Senses, reachable: &Reachable) {
+        let extent = senses.sensor().world().extent();
         let index = |cell: Cell| cell.y as usize * usize::from(extent.width) + cell.x as usize;
         for records in records.chunk_by(|a, b| a.tick == b.tick) {
             let tick = records[0].tick;
@@ -392,13 +396,21 @@ impl History {
                 if self.visited_since[stood] == NEVER {
                     self.visited_since[stood] = tick;
                 }
-                let view = &sensor.view(record.at).sighting;
-                for cell in view.free_cells().chain(view.blocked_cells()) {
+                let robot = usize::from(record.robot);
+                let view = senses.view(tick, robot, record.at);
+                let seen = view.iter().flat_map(|view| {
+                    let sighting = &view.sighting;
+                    sighting.free_cells().chain(sighting.blocked_cells())
+                });
+                for cell in seen {
                     if extent.contains(cell) && self.seen_since[index(cell)] == NEVER {
                         self.seen_since[index(cell)] = tick;
                         self.news.push(cell);
                         self.seen_cells += u32::from(reachable.contains(cell));
                     }
+                }
+                if let Some(to) = record.turns_to() {
+                    senses.turn(robot, to);
                 }
             }
             let begin = self.first.last().copied().unwrap_or(0);

@@ -13,6 +13,7 @@ use host_sim::measured::Measured;
 use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
 use host_sim::run::{self, Here, Host, Options, Progress, Scenario};
+use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -42,6 +43,10 @@ pub(crate) struct Explore {
     /// Sensor range in cells, 1 to 15.
     #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=15))]
     range: u8,
+    /// The sensor's field of view around the robot's heading in degrees, 1 to 360;
+    /// below 360, for the explorer alone, robots turn to look around.
+    #[arg(long, value_name = "DEGREES", default_value_t = ALL_AROUND, value_parser = clap::value_parser!(u16).range(1..=360))]
+    fov: u16,
     /// How robots tell each other what they know: in radio frames of at most 55
     /// bytes, or ideally, whole maps at once as in the papers.
     #[arg(long, value_name = "NAME", default_value = "radio")]
@@ -201,6 +206,7 @@ impl Explore {
         let starts = world.place(self.robots.into(), &starts, self.solid)?;
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
+        scenario.fov = self.fov;
         scenario.sync = self.sync;
         scenario.loss = self.faults.loss;
         scenario.air = self.faults.air();

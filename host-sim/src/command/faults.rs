@@ -1,15 +1,15 @@
 //! What goes wrong in a run, as options.
 
-use std::str::FromStr;
-
 use clap::Args;
-use host_sim::fleet::{Arrival, Death, Faults, Restart};
+use host_sim::fleet::{
+    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure,
+};
 use host_sim::medium::{AirFaults, Forger, Partition, Reach};
 use planner_core::RobotId;
 
 use super::explore::parse_share;
 
-/// Options of the air and of robots that fail.
+/// Options of the air, and of robots, cells and senses that fail.
 #[derive(Args)]
 #[command(next_help_heading = "What goes wrong")]
 pub(super) struct FaultArgs {
@@ -40,14 +40,34 @@ pub(super) struct FaultArgs {
     partition: Vec<Partition>,
     /// ROBOT@TICK: this robot (from 0) dies in this tick. May be given again.
     #[arg(long, value_name = "ROBOT@TICK")]
-    kill: Vec<Event>,
+    kill: Vec<Death>,
     /// ROBOT@TICK: this robot is not there before this tick. May be given again.
     #[arg(long, value_name = "ROBOT@TICK")]
-    late: Vec<Event>,
+    late: Vec<Arrival>,
     /// ROBOT@TICK: this robot starts anew where it stands, with an empty map, also
     /// if it was dead. May be given again.
     #[arg(long, value_name = "ROBOT@TICK")]
-    restart: Vec<Event>,
+    restart: Vec<Restart>,
+    /// ROBOT@TICK: this robot is told to go on with its map, also if it had stopped. May
+    /// be given again.
+    #[arg(long, value_name = "ROBOT@TICK")]
+    resume: Vec<Resume>,
+    /// X,Y or X,Y@FROM-UNTIL: nobody can enter this cell, always or in the ticks from
+    /// FROM until before UNTIL, and no sensor shows that. May be given again.
+    #[arg(long, value_name = "X,Y[@FROM-UNTIL]")]
+    close: Vec<Closure>,
+    /// X,Y or X,Y@FROM-UNTIL: no sensor says anything of this cell, as of glass. May be
+    /// given again.
+    #[arg(long, value_name = "X,Y[@FROM-UNTIL]")]
+    blind: Vec<Blind>,
+    /// ROBOT@TICK: from this tick on this robot's sensor shows nothing. May be given
+    /// again.
+    #[arg(long, value_name = "ROBOT@TICK")]
+    sensor_fails: Vec<SensorFailure>,
+    /// ROBOT@FROM-UNTIL: in these ticks this robot's pose lies off the grid. May be given
+    /// again.
+    #[arg(long, value_name = "ROBOT@FROM-UNTIL")]
+    pose_lost: Vec<LostPose>,
 }
 
 impl FaultArgs {
@@ -67,62 +87,36 @@ impl FaultArgs {
     /// # Errors
     /// A robot that is not there, with the numbers that are.
     pub(super) fn of_robots(&self, robots: usize) -> Result<Faults, String> {
-        for (option, events) in [
-            ("kill", &self.kill),
-            ("late", &self.late),
-            ("restart", &self.restart),
-        ] {
-            if let Some(event) = events.iter().find(|of| usize::from(of.robot) >= robots) {
-                let (robot, last) = (event.robot, robots - 1);
-                return Err(format!(
-                    "--{option}: there is no robot {robot}; robots are numbered 0 to {last}"
-                ));
-            }
+        let kill = self.kill.iter().map(|of| ("kill", of.robot));
+        let late = self.late.iter().map(|of| ("late", of.robot));
+        let restart = self.restart.iter().map(|of| ("restart", of.robot));
+        let resume = self.resume.iter().map(|of| ("resume", of.robot));
+        let sensor_fails = self.sensor_fails.iter();
+        let sensor_fails = sensor_fails.map(|of| ("sensor-fails", of.robot));
+        let pose_lost = self.pose_lost.iter().map(|of| ("pose-lost", of.robot));
+        let mut named = kill
+            .chain(late)
+            .chain(restart)
+            .chain(resume)
+            .chain(sensor_fails)
+            .chain(pose_lost);
+        if let Some((option, robot)) = named.find(|(_, robot)| usize::from(robot.0) >= robots) {
+            return Err(format!(
+                "--{option}: there is no robot {}; robots are numbered 0 to {}",
+                robot.0,
+                robots - 1
+            ));
         }
-        let robot = |event: &Event| RobotId(event.robot);
         Ok(Faults {
-            deaths: (self.kill.iter())
-                .map(|event| Death {
-                    robot: robot(event),
-                    tick: event.tick,
-                })
-                .collect(),
-            arrivals: (self.late.iter())
-                .map(|event| Arrival {
-                    robot: robot(event),
-                    tick: event.tick,
-                })
-                .collect(),
-            restarts: (self.restart.iter())
-                .map(|event| Restart {
-                    robot: robot(event),
-                    tick: event.tick,
-                })
-                .collect(),
-            closures: Vec::new(),
+            deaths: self.kill.clone(),
+            arrivals: self.late.clone(),
+            restarts: self.restart.clone(),
+            resumes: self.resume.clone(),
+            closures: self.close.clone(),
+            blind: self.blind.clone(),
+            sensor_failures: self.sensor_fails.clone(),
+            lost_poses: self.pose_lost.clone(),
         })
-    }
-}
-
-/// Something that happens to a robot in a tick.
-#[derive(Clone, Copy)]
-struct Event {
-    robot: u8,
-    tick: u32,
-}
-
-impl FromStr for Event {
-    type Err = &'static str;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        text.split_once('@')
-            .and_then(|(robot, tick)| {
-                Some(Self {
-                    robot: robot.parse().ok()?,
-                    tick: tick.parse().ok()?,
-                })
-            })
-            .ok_or("expected ROBOT@TICK, for example 2@100: robot 2 in tick 100")
     }
 }
 

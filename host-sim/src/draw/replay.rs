@@ -1,18 +1,16 @@
 //! What the team had seen, and where it was, tick by tick.
 
-use std::sync::Arc;
-
 use planner_core::{Cell, Extent};
 
 use super::paint::Ground;
-use crate::sensor::Sensor;
+use crate::senses::Senses;
 use crate::trace::{Record, Trace};
 use crate::world::Reachable;
 
 /// A trace played forward.
 pub struct Replay<'a> {
     trace: &'a Trace,
-    sensor: Sensor,
+    senses: Senses,
     reachable: Reachable,
     /// Cells that somebody has seen, row by row.
     seen: Vec<bool>,
@@ -28,7 +26,7 @@ impl<'a> Replay<'a> {
         let world = &scenario.world;
         Self {
             trace,
-            sensor: Sensor::new(Arc::clone(world), scenario.range),
+            senses: scenario.senses(scenario.sensor()),
             reachable: world.reachable(&scenario.starts),
             seen: vec![false; world.extent().cells() as usize],
             seen_cells: 0,
@@ -54,13 +52,18 @@ impl<'a> Replay<'a> {
     fn play(&mut self, record: &Record) {
         let robot = usize::from(record.robot);
         let extent = self.trace.scenario.world.extent();
-        let sighting = &self.sensor.view(record.at).sighting;
-        for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
-            if extent.contains(cell) {
-                let seen = &mut self.seen[index(extent, cell)];
-                self.seen_cells += u32::from(!*seen && self.reachable.contains(cell));
-                *seen = true;
+        if let Some(view) = self.senses.view(record.tick, robot, record.at) {
+            let sighting = &view.sighting;
+            for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
+                if extent.contains(cell) {
+                    let seen = &mut self.seen[index(extent, cell)];
+                    self.seen_cells += u32::from(!*seen && self.reachable.contains(cell));
+                    *seen = true;
+                }
             }
+        }
+        if let Some(to) = record.turns_to() {
+            self.senses.turn(robot, to);
         }
         if let Some(position) = self.positions.get_mut(robot) {
             *position = record.after();

@@ -202,7 +202,7 @@ impl Server {
     fn step(&mut self) {
         for (index, body) in self.bodies.iter_mut().enumerate() {
             if let Some(line) = &mut body.line {
-                let view = self.sensor.view(body.at);
+                let view = self.sensor.view(body.at, Direction::East);
                 self.coverage.look(index, view);
                 if line
                     .say(&FromWorld::Look(Look::of(&view.sighting)))

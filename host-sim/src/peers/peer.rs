@@ -68,6 +68,8 @@ pub struct Peer<R, const TW: usize, const TH: usize> {
     closed: Vec<(Cell, u32)>,
     blocked_steps: u32,
     stopped: Option<Stop>,
+    /// Whether the last pose lay off the grid.
+    is_astray: bool,
     /// Steps to the goal that this tick assigned.
     assignment: Option<u32>,
     work: u32,
@@ -105,6 +107,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
             closed: Vec::new(),
             blocked_steps: 0,
             stopped: None,
+            is_astray: false,
             assignment: None,
             work: 0,
         })
@@ -166,6 +169,10 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
 
 impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        self.is_astray = !self.map.extent().contains(sighting.centre());
+        if self.is_astray {
+            return Learnt::default();
+        }
         self.position = sighting.centre();
         self.map.visit(self.position);
         let learnt = self.map.observe(sighting);
@@ -180,6 +187,9 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         self.link.tick();
         if let Some(stop) = self.stopped {
             return Action::Stop(stop);
+        }
+        if self.is_astray {
+            return Action::Wait;
         }
         self.clock += 1;
         let now = self.clock;

@@ -3,21 +3,22 @@
 use std::sync::Arc;
 
 use planner_core::radio::Hearsay;
-use planner_core::{Cell, Map};
+use planner_core::{Cell, Direction, Map};
 
 use super::{Assignments, Outcome, Progress, RobotOutcome, Scenario};
 use crate::coverage::Coverage;
 use crate::fleet::{Deed, Fleet, Robot, Sent};
+use crate::senses::Senses;
 use crate::sensor::Sensor;
 use crate::trace::{Record, Trace};
 use crate::world::{Reachable, World};
 
 /// What is written down while a run goes on.
 pub(super) struct Book {
-    sensor: Arc<Sensor>,
+    senses: Senses,
     reachable: Reachable,
     coverage: Coverage,
-    looked_from: Vec<Option<Cell>>,
+    looked_from: Vec<Option<(Cell, Direction)>>,
     outcome: Outcome,
     records: Option<Vec<Record>>,
 }
@@ -55,7 +56,7 @@ impl Book {
         };
         Self {
             coverage: Coverage::new(&scenario.world, &reachable, robots),
-            sensor,
+            senses: scenario.senses(sensor),
             reachable,
             looked_from: vec![None; robots],
             outcome,
@@ -68,9 +69,15 @@ impl Book {
         let tick = fleet.ticks() - 1;
         for (index, robot) in fleet.robots().iter().enumerate() {
             let Some(step) = robot.step else { continue };
-            if self.looked_from[index] != Some(step.at) {
-                self.looked_from[index] = Some(step.at);
-                self.coverage.look(index, self.sensor.view(step.at));
+            let from = (step.at, self.senses.heading(index));
+            if self.looked_from[index] != Some(from) || !self.senses.is_steady() {
+                self.looked_from[index] = Some(from);
+                if let Some(view) = self.senses.view(tick, index, step.at) {
+                    self.coverage.look(index, &view);
+                }
+            }
+            if let Some(to) = step.deed.turns_to() {
+                self.senses.turn(index, to);
             }
             let noted = &mut self.outcome.robots[index];
             noted.work += u64::from(step.work);
@@ -80,7 +87,8 @@ impl Book {
             match step.deed {
                 Deed::Moved(_) => noted.steps += 1,
                 Deed::Blocked(_) => noted.blocked_steps += 1,
-                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded | Deed::Waited => {}
+                Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded => {}
+                Deed::Waited | Deed::Looked(_) => {}
                 Deed::Stopped(stop) => noted.stop = Some(stop),
             }
             let most = &mut self.outcome.max_work_per_tick;

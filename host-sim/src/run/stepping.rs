@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use planner_core::map::{Tile, TileIndex};
-use planner_core::{Cell, Direction, RobotId};
+use planner_core::{Cell, Direction, RobotId, Wait};
 
 use super::book::Book;
 use super::{Host, Outcome, Progress, Scenario, fleet_on};
@@ -30,8 +30,7 @@ impl<const TW: usize, const TH: usize> Running<TW, TH> {
         sensor: Option<Arc<Sensor>>,
         trace: bool,
     ) -> Self {
-        let sensor =
-            sensor.unwrap_or_else(|| Arc::new(Sensor::new(scenario.world.clone(), scenario.range)));
+        let sensor = sensor.unwrap_or_else(|| scenario.sensor());
         Self {
             fleet: fleet_on(host, scenario, sensor.clone()),
             book: Book::new(scenario, sensor, trace),
@@ -76,12 +75,16 @@ pub struct Seen {
     pub id: RobotId,
     /// Where its body is.
     pub position: Cell,
+    /// Which way it is turned.
+    pub heading: Direction,
     /// Whether it lives.
     pub alive: bool,
     /// Whether its body is in the world.
     pub is_there: bool,
     /// What it did in the last tick.
     pub step: Option<Step>,
+    /// Why it waits; `None`: it does not, or its planner does not tell.
+    pub waiting: Option<Wait>,
     /// Where it is going.
     pub goal: Option<Cell>,
     /// Steps to the goal at most, and changes to a longer plan since it last
@@ -142,12 +145,15 @@ impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
     }
 
     fn robot(&self, robot: usize) -> Seen {
+        let heading = self.fleet.heading(robot);
         let robot = self.of(robot);
         let map = robot.planner.map();
         let role = robot.planner.role();
         Seen {
             id: robot.id,
             position: robot.position,
+            heading,
+            waiting: robot.planner.waiting(),
             alive: robot.alive,
             is_there: robot.is_there(),
             step: robot.step,

@@ -9,10 +9,13 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{COLUMNS, NOWHERE, Record, Trace};
-use crate::fleet::{Arrival, Closure, Death, Faults, Restart, Sent};
+use crate::fleet::{
+    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure, Sent,
+};
 use crate::medium::{AirFaults, MediumKind};
 use crate::planners::PlannerKind;
 use crate::run::{Scenario, ScenarioError};
+use crate::sensor::ALL_AROUND;
 use crate::world::{World, WorldError};
 
 const KIND: Kind = Kind {
@@ -177,6 +180,9 @@ struct Header {
     records: usize,
     planner: PlannerKind,
     range: u8,
+    /// Absent where sensors look all around.
+    #[serde(default = "all_around", skip_serializing_if = "is_all_around")]
+    fov: u16,
     medium: MediumKind,
     sync: u32,
     byte_budget: u16,
@@ -194,7 +200,28 @@ struct Header {
     restarts: Vec<(u8, u32)>,
     /// (x, y, from, until)
     closures: Vec<(i16, i16, u32, u32)>,
+    // Absent where they do not happen: older traces have none of them.
+    /// (robot, tick)
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    resumes: Vec<(u8, u32)>,
+    /// (x, y, from, until)
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    blind: Vec<(i16, i16, u32, u32)>,
+    /// (robot, tick)
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    sensor_failures: Vec<(u8, u32)>,
+    /// (robot, from, until)
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    lost_poses: Vec<(u8, u32, u32)>,
     world: WorldRows,
+}
+
+fn all_around() -> u16 {
+    ALL_AROUND
+}
+
+fn is_all_around(fov: &u16) -> bool {
+    *fov == ALL_AROUND
 }
 
 #[derive(Serialize, Deserialize)]
@@ -260,6 +287,7 @@ impl Header {
             records: trace.records.len(),
             planner: scenario.planner,
             range: scenario.range,
+            fov: scenario.fov,
             medium: scenario.medium,
             sync: scenario.sync,
             byte_budget: scenario.byte_budget,
@@ -289,6 +317,18 @@ impl Header {
                 .map(|restart| (restart.robot.0, restart.tick))
                 .collect(),
             closures: faults.closures.iter().map(closure).collect(),
+            resumes: (faults.resumes.iter())
+                .map(|resume| (resume.robot.0, resume.tick))
+                .collect(),
+            blind: (faults.blind.iter())
+                .map(|blind| (blind.cell.x, blind.cell.y, blind.from, blind.until))
+                .collect(),
+            sensor_failures: (faults.sensor_failures.iter())
+                .map(|failure| (failure.robot.0, failure.tick))
+                .collect(),
+            lost_poses: (faults.lost_poses.iter())
+                .map(|lost| (lost.robot.0, lost.from, lost.until))
+                .collect(),
             world: WorldRows::of(&scenario.world),
         }
     }
@@ -311,6 +351,24 @@ impl Header {
             from,
             until,
         };
+        let resume = |(robot, tick)| Resume {
+            robot: RobotId(robot),
+            tick,
+        };
+        let blind = |(x, y, from, until)| Blind {
+            cell: Cell::new(x, y),
+            from,
+            until,
+        };
+        let sensor_failure = |(robot, tick)| SensorFailure {
+            robot: RobotId(robot),
+            tick,
+        };
+        let lost_pose = |(robot, from, until)| LostPose {
+            robot: RobotId(robot),
+            from,
+            until,
+        };
         let scenario = Scenario {
             world: Arc::new(self.world.world()?),
             starts: self
@@ -320,6 +378,7 @@ impl Header {
                 .collect(),
             planner: self.planner,
             range: self.range,
+            fov: self.fov,
             medium: self.medium,
             sync: self.sync,
             byte_budget: self.byte_budget,
@@ -334,6 +393,12 @@ impl Header {
                 arrivals: self.arrivals.into_iter().map(arrival).collect(),
                 restarts: self.restarts.into_iter().map(restart).collect(),
                 closures: self.closures.into_iter().map(closure).collect(),
+                resumes: self.resumes.into_iter().map(resume).collect(),
+                blind: self.blind.into_iter().map(blind).collect(),
+                sensor_failures: (self.sensor_failures.into_iter())
+                    .map(sensor_failure)
+                    .collect(),
+                lost_poses: self.lost_poses.into_iter().map(lost_pose).collect(),
             },
         };
         scenario.check()?;

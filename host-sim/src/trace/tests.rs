@@ -3,7 +3,9 @@ use std::sync::Arc;
 use planner_core::{Cell, Direction, RobotId};
 
 use super::*;
-use crate::fleet::{Arrival, Closure, Death, Faults, Restart};
+use crate::fleet::{
+    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure,
+};
 use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::run::{Options, run};
@@ -22,6 +24,7 @@ fn trace() -> Trace {
         ..AirFaults::default()
     };
     scenario.seed = u64::MAX;
+    scenario.max_ticks = 400;
     scenario.faults = Faults {
         deaths: vec![Death {
             robot: RobotId(1),
@@ -39,6 +42,24 @@ fn trace() -> Trace {
         restarts: vec![Restart {
             robot: RobotId(1),
             tick: 90,
+        }],
+        resumes: vec![Resume {
+            robot: RobotId(0),
+            tick: 60,
+        }],
+        blind: vec![Blind {
+            cell: Cell::new(0, 3),
+            from: 0,
+            until: u32::MAX,
+        }],
+        sensor_failures: vec![SensorFailure {
+            robot: RobotId(2),
+            tick: 200,
+        }],
+        lost_poses: vec![LostPose {
+            robot: RobotId(0),
+            from: 30,
+            until: 35,
         }],
     };
     let options = Options {
@@ -66,6 +87,52 @@ fn a_trace_survives_its_file_and_runs_again() {
     };
     let (_, again) = run(&read.scenario, options).unwrap();
     assert_eq!(again.unwrap().digest(), trace.digest());
+}
+
+#[test]
+fn a_header_names_a_field_of_view_and_faults_of_senses_only_where_there_are_any() {
+    let mut trace = trace();
+    let names = ["fov", "resumes", "blind", "sensor_failures", "lost_poses"];
+    let has = |text: &str, name: &str| text.contains(&format!("\"{name}\":"));
+    for name in &names[1..] {
+        assert!(has(&text(&trace), name), "{name}");
+    }
+    trace.scenario.faults = Faults::default();
+    for name in names {
+        assert!(!has(&text(&trace), name), "{name}");
+    }
+    let usual = text(&trace);
+    assert_eq!(Trace::read(usual.as_bytes()).unwrap().scenario.fov, 360);
+    let narrow = usual.replacen("\"range\":5", "\"range\":5,\"fov\":62", 1);
+    let narrow = |planner: &str| narrow.replacen("\"closest\"", planner, 1);
+    let read = Trace::read(narrow("\"explorer\"").as_bytes()).unwrap();
+    assert_eq!(read.scenario.fov, 62);
+    assert!(text(&read).contains("\"fov\":62"));
+    let error = Trace::read(narrow("\"closest\"").as_bytes()).unwrap_err();
+    assert!(error.to_string().contains("closest never turns"), "{error}");
+}
+
+#[test]
+fn a_turn_has_codes_of_its_own() {
+    let first = trace().records[0];
+    let record = |action| Record { action, ..first };
+    for (direction, code) in Direction::ALL.into_iter().zip(18..) {
+        assert_eq!(Deed::Looked(direction).turns_to(), Some(direction));
+        let looked = record(code);
+        assert_eq!(
+            (looked.looked(), looked.turns_to()),
+            (Some(direction), Some(direction))
+        );
+        assert_eq!(looked.after(), looked.at);
+        assert!(!looked.has_stopped());
+        for code in [0, 4, 8, 12].map(|kind| kind + direction as u8) {
+            let tried = record(code);
+            assert_eq!((tried.looked(), tried.turns_to()), (None, Some(direction)));
+        }
+    }
+    for code in [16, 17, 22, 32, 40] {
+        assert_eq!(record(code).turns_to(), None);
+    }
 }
 
 #[test]

@@ -4,8 +4,10 @@ use std::mem::discriminant;
 
 use clap::ValueEnum;
 use egui::{Button, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
+use host_sim::fleet::Faults;
 use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
+use host_sim::sensor::ALL_AROUND;
 use host_sim::survey::{Planner, TerrainSource};
 use host_sim::world::{Family, Starts};
 use planner_core::Extent;
@@ -39,6 +41,9 @@ impl App {
             &mut setup.planner,
             PlannerKind::value_variants(),
         );
+        if !setup.planner.turns_sensor() {
+            setup.fov = ALL_AROUND;
+        }
         self.rival(ui);
         title(ui, "Radio");
         radio(ui, &mut setup);
@@ -105,8 +110,7 @@ impl App {
             *setup = Setup {
                 map,
                 starts: None,
-                deaths: Vec::new(),
-                arrivals: Vec::new(),
+                faults: Faults::default(),
                 ..setup.clone()
             };
         }
@@ -421,8 +425,15 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     );
     if setup.robots < before {
         let left = setup.robots;
-        setup.deaths.retain(|death| death.robot.0 < left);
-        setup.arrivals.retain(|arrival| arrival.robot.0 < left);
+        let faults = &mut setup.faults;
+        faults.deaths.retain(|death| death.robot.0 < left);
+        faults.arrivals.retain(|arrival| arrival.robot.0 < left);
+        faults.restarts.retain(|restart| restart.robot.0 < left);
+        faults.resumes.retain(|resume| resume.robot.0 < left);
+        faults
+            .sensor_failures
+            .retain(|failure| failure.robot.0 < left);
+        faults.lost_poses.retain(|lost| lost.robot.0 < left);
     }
     let name = match &setup.starts {
         None => "as the map says",
@@ -444,6 +455,9 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
             }
         });
     ui.add(Slider::new(&mut setup.range, 1..=MAX_RADIUS).text("sensor range"));
+    if setup.planner.turns_sensor() {
+        ui.add(Slider::new(&mut setup.fov, 1..=ALL_AROUND).text("field of view"));
+    }
     ui.checkbox(&mut setup.solid, "a cell holds one robot");
     ui.horizontal(|ui| {
         number(ui, "seed of the run", DragValue::new(&mut setup.seed));
@@ -451,16 +465,49 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     if let Some(Starts::Random(seed)) = &mut setup.starts {
         *seed = setup.seed;
     }
-    if !setup.deaths.is_empty() || !setup.arrivals.is_empty() {
-        let (deaths, arrivals) = (setup.deaths.len(), setup.arrivals.len());
+    let faults = &mut setup.faults;
+    if !faults.deaths.is_empty() || !faults.arrivals.is_empty() {
+        let (deaths, arrivals) = (faults.deaths.len(), faults.arrivals.len());
         ui.horizontal_wrapped(|ui| {
             ui.label(format!("{deaths} killed, {arrivals} added on the way"));
             if ui.button("Revive").clicked() {
-                setup.deaths.clear();
-                setup.arrivals.clear();
+                faults.deaths.clear();
+                faults.arrivals.clear();
             }
         });
     }
+    let others = Faults {
+        deaths: Vec::new(),
+        arrivals: Vec::new(),
+        ..faults.clone()
+    };
+    if others != Faults::default() {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(in_words(&others));
+            if ui.button("Without them").clicked() {
+                *faults = Faults {
+                    deaths: std::mem::take(&mut faults.deaths),
+                    arrivals: std::mem::take(&mut faults.arrivals),
+                    ..Faults::default()
+                };
+            }
+        });
+    }
+}
+
+/// The faults that no button sets, as many as there are of each kind.
+fn in_words(faults: &Faults) -> String {
+    let counts = [
+        (faults.restarts.len(), "restarted"),
+        (faults.resumes.len(), "told to go on"),
+        (faults.closures.len(), "cells closed"),
+        (faults.blind.len(), "cells that no look shows"),
+        (faults.sensor_failures.len(), "sensors fail"),
+        (faults.lost_poses.len(), "poses lost"),
+    ];
+    let some = counts.iter().filter(|(count, _)| *count > 0);
+    let words: Vec<String> = some.map(|(count, of)| format!("{count} {of}")).collect();
+    words.join(", ")
 }
 
 fn radio(ui: &mut Ui, setup: &mut Setup) {

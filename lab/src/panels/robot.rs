@@ -2,9 +2,12 @@
 
 use egui::{Grid, RichText, Ui};
 use host_sim::fleet::Deed;
+use host_sim::sensor::ALL_AROUND;
+use planner_core::Wait;
 
 use crate::app::App;
 use crate::decisions::{decisions, name};
+use crate::watch::Verdict;
 
 /// Decisions that are shown.
 const DECISIONS: usize = 12;
@@ -32,10 +35,15 @@ impl App {
                     "The planners of this program decide otherwise than this trace, first in tick {differs}."
                 ));
             }
+            let is_at_end = watch.shown() == watch.ticks() && !watch.is_replay();
+            let is_over = is_at_end && watch.verdict() != Verdict::Running;
+            if is_over && ui.button("Let all robots go on").clicked() {
+                self.go_on(None);
+            }
             self.selected = chosen;
             return;
         };
-        let mut kills = false;
+        let (mut kills, mut goes_on) = (false, false);
         let mut rows: Vec<(&str, String)> = Vec::new();
         let record = watch
             .last_records()
@@ -47,10 +55,14 @@ impl App {
                 (false, false, _) => "still to come".into(),
                 (false, ..) => "dead".into(),
                 (true, _, None) => "about to begin".into(),
+                (true, _, Some(Deed::Waited)) => seen.waiting.map_or("waited".into(), reason),
                 (true, _, Some(deed)) => words(deed),
             };
             rows.push(("state", deed));
             rows.push(("at", seen.position.to_string()));
+            if watch.scenario().fov < ALL_AROUND {
+                rows.push(("turned to the", name(seen.heading).into()));
+            }
             if let Some((remaining, changes)) = seen.plan {
                 let plan = seen
                     .goal
@@ -61,6 +73,8 @@ impl App {
             rows.push(("cells known", seen.known_cells.to_string()));
             rows.push(("frontier cells", seen.frontiers.to_string()));
             kills = seen.alive && !watch.is_replay();
+            let stopped = seen.step.map(|step| matches!(step.deed, Deed::Stopped(_)));
+            goes_on = kills && stopped == Some(true);
         }
         if let Some(record) = record {
             let goal = record.goal.map_or("none".into(), |goal| goal.to_string());
@@ -95,8 +109,21 @@ impl App {
         if kills && ui.button("Kill this robot").clicked() {
             self.kill(robot);
         }
+        if goes_on && ui.button("Let this robot go on").clicked() {
+            self.go_on(Some(robot));
+        }
         ui.separator();
         self.selected = chosen;
+    }
+}
+
+fn reason(wait: Wait) -> String {
+    match wait {
+        Wait::Sight => "waits: it has seen nothing yet".into(),
+        Wait::Pose => "waits: its pose lies off the map".into(),
+        Wait::Search => "waits: it searches the map".into(),
+        Wait::Closed => "waits: what is left is behind cells that refused it".into(),
+        Wait::Look(way) => format!("looks {}", name(way)),
     }
 }
 
@@ -108,6 +135,7 @@ fn words(deed: Deed) -> String {
         Deed::Exchanged(way) => format!("exchanged roles with the robot in the {}", name(way)),
         Deed::Yielded => "gave its role away".into(),
         Deed::Waited => "waited".into(),
+        Deed::Looked(way) => format!("looks {}", name(way)),
         Deed::Stopped(stop) => format!("stopped: {stop}"),
     }
 }

@@ -45,6 +45,8 @@ pub struct Bmilrv<const TW: usize, const TH: usize> {
     heading: Option<Cell>,
     blocked_steps: u32,
     stopped: Option<Stop>,
+    /// Whether the last pose lay off the grid.
+    is_astray: bool,
 }
 
 impl<const TW: usize, const TH: usize> Bmilrv<TW, TH> {
@@ -73,12 +75,17 @@ impl<const TW: usize, const TH: usize> Bmilrv<TW, TH> {
             heading: None,
             blocked_steps: 0,
             stopped: None,
+            is_astray: false,
         })
     }
 }
 
 impl<const TW: usize, const TH: usize> Planner<TW, TH> for Bmilrv<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        self.is_astray = !self.map.extent().contains(sighting.centre());
+        if self.is_astray {
+            return Learnt::default();
+        }
         let mut board = self.marks.lock();
         board.observe(sighting);
         self.robot.look(&mut board, sighting);
@@ -95,6 +102,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Bmilrv<TW, TH> {
             return Action::Stop(stop);
         }
         self.heading = None;
+        if self.is_astray {
+            return Action::Wait;
+        }
         match self.robot.decide(&mut self.marks.lock()) {
             Decision::Go(direction) => {
                 self.heading = Some(self.robot.position().step(direction));

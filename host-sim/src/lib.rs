@@ -7,15 +7,18 @@
 //! [`run::run`] gives its outcome and, if asked, the [`Trace`](trace::Trace)
 //! that everything else is drawn from.
 //!
-//! Compiled for the browser (`wasm32`), the library lacks `chip`, `experiments` and
-//! `live`, which need processes, threads or sockets.
+//! Compiled for the browser (`wasm32`), the library lacks `chip`, `experiments`,
+//! `files` and `live`, which need processes, threads, sockets or a file system.
 
 #[cfg(unix)]
 pub mod chip;
 mod coverage;
 pub mod draw;
+mod excerpt;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod experiments;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod files;
 pub mod fleet;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod live;

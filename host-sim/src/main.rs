@@ -1,6 +1,9 @@
 //! The command `host-sim`.
 
+#[macro_use]
+mod output;
 mod command;
+mod interrupt;
 
 use std::process::ExitCode;
 
@@ -41,7 +44,12 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let done = match Command::parse() {
+    interrupt::leave_no_half_files();
+    let command = match Command::try_parse() {
+        Ok(command) => command,
+        Err(words) => return explain(&words),
+    };
+    let done = match command {
         Command::Explore(explore) => explore.run(),
         #[cfg(unix)]
         Command::Firmware(firmware) => firmware.run(),
@@ -52,8 +60,20 @@ fn main() -> ExitCode {
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),
     };
-    done.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
-        ExitCode::from(2)
-    })
+    done.and_then(|status| Ok(output::close().map(|()| status)?))
+        .unwrap_or_else(|error| {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        })
+}
+
+/// Prints the help that was asked for, or what is wrong with the arguments.
+fn explain(words: &clap::Error) -> ExitCode {
+    match (words.exit_code(), words.print()) {
+        (0, Err(error)) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            eprintln!("error: standard output cannot be written: {error}");
+            ExitCode::from(2)
+        }
+        (status, _) => ExitCode::from(status as u8),
+    }
 }

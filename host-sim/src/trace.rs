@@ -5,13 +5,16 @@
 //! scenario with the world's rows (`#` obstacle, `.` free), the number of
 //! records and their digest. Line 2 names the columns; every further line is
 //! one record, [`COLUMNS`] as comma-separated integers. Nothing else is needed
-//! to run the scenario again or to redraw it.
+//! to run the scenario again or to redraw it. What no run leaves (a place outside the
+//! world, a robot that is not there, a step that does not follow from the last) is
+//! refused on reading, with its line.
 //!
 //! The digest is the first 16 hex digits of the SHA-256 of all records, each as
 //! 30 bytes, little-endian: tick `u32`, robot `u8`, x `i16`, y `i16`, action
 //! `u8`, goal x `i16`, goal y `i16`, known `u32`, work `u32`, frames `u32`,
 //! bytes `u32`.
 
+mod check;
 mod file;
 
 use planner_core::{Cell, Direction};

@@ -37,6 +37,8 @@ mod here {
     use std::path::Path;
     use std::time::Instant;
 
+    use host_sim::files;
+
     use super::Inbox;
 
     impl Inbox {
@@ -66,7 +68,7 @@ mod here {
     /// A sentence for the user.
     pub fn save(name: &str, bytes: &[u8]) -> Result<String, String> {
         let path = Path::new("out/lab").join(name);
-        let written = fs::create_dir_all("out/lab").and_then(|()| fs::write(&path, bytes));
+        let written = fs::create_dir_all("out/lab").and_then(|()| files::write(&path, bytes));
         match written {
             Ok(()) => Ok(format!("written to {}", path.display())),
             Err(error) => Err(format!("{} cannot be written: {error}", path.display())),

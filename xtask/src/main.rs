@@ -1,6 +1,39 @@
 //! What Cargo cannot say by itself: every check in one command, the image for
 //! the chip, long runs. `cargo xtask --help` tells more.
 
+/// In place of the standard library's, which panics when nobody reads any more: a check
+/// goes on, and its exit status tells.
+macro_rules! println {
+    ($($words:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($words)*);
+    }};
+}
+
+/// See [`println!`].
+macro_rules! print {
+    ($($words:tt)*) => {{
+        use std::io::Write;
+        let _ = write!(std::io::stdout(), $($words)*);
+    }};
+}
+
+/// See [`println!`].
+macro_rules! eprintln {
+    ($($words:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stderr(), $($words)*);
+    }};
+}
+
+/// See [`println!`].
+macro_rules! eprint {
+    ($($words:tt)*) => {{
+        use std::io::Write;
+        let _ = write!(std::io::stderr(), $($words)*);
+    }};
+}
+
 mod budget;
 mod c_interface;
 mod checks;

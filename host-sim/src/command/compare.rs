@@ -18,10 +18,10 @@ use host_sim::world::{Family, ReadOptions, Recipe, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Extent;
 
-use super::Done;
 use super::explore::parse_share;
 use super::folder::Folder;
 use super::generate::parse_size;
+use super::{Done, tell_notes};
 
 #[derive(Args)]
 pub(crate) struct Compare {
@@ -191,9 +191,7 @@ impl Compare {
             ..ReadOptions::default()
         };
         let world = World::read(path, &options)?;
-        for note in world.notes() {
-            eprintln!("note: {}: {note}", path.display());
-        }
+        tell_notes(path, &world);
         Ok(Arc::new(world))
     }
 

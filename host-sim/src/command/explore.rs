@@ -20,14 +20,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Cell;
 use planner_core::radio::{Key, MAX_LEN};
 
-use super::Done;
 use super::faults::FaultArgs;
 use super::folder::Folder;
 use super::report;
+use super::{Done, tell_notes};
 
 #[derive(Args)]
 pub(crate) struct Explore {
-    /// The map: .png, .pgm, .yaml (ROS map_server), .map (MovingAI) or .txt.
+    /// The map: .png, .pgm, .yaml (ROS map_server), .map (MovingAI) or .txt. What it
+    /// calls unknown (map_saver's gray 205, transparent pixels) robots do not enter.
     map: PathBuf,
     /// What decides in each robot.
     #[arg(long, value_name = "NAME", default_value = "explorer")]
@@ -130,9 +131,7 @@ impl Explore {
         measured: impl FnOnce() -> Result<Option<Measured>, Box<dyn Error>>,
     ) -> Done {
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
-        for note in world.notes() {
-            eprintln!("note: {}: {note}", self.map.display());
-        }
+        tell_notes(&self.map, &world);
         let scenario = self.scenario(world)?;
         let out = self.out.clone();
         let out = out.unwrap_or_else(|| PathBuf::from("out").join(scenario.world.name()));

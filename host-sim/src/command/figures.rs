@@ -9,11 +9,11 @@ use clap::Args;
 use host_sim::experiments::figures::{Effort, Figure, figures, measure, page};
 use host_sim::experiments::to_csv;
 use host_sim::survey::figures as survey;
-use host_sim::world::{ReadOptions, Scale, World};
+use host_sim::world::{ReadOptions, Scale, World, WorldError};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::Done;
 use super::folder::Folder;
+use super::{Done, tell_notes};
 
 #[derive(Args)]
 pub(crate) struct Figures {
@@ -97,7 +97,11 @@ impl Figures {
             ..ReadOptions::default()
         };
         let hospital = self.hospital.as_ref();
-        let hospital = hospital.map(|path| World::read(path, &options).map(Arc::new));
+        let hospital = hospital.map(|path| {
+            let world = World::read(path, &options)?;
+            tell_notes(path, &world);
+            Ok::<_, WorldError>(Arc::new(world))
+        });
         let mut figures = figures(effort, hospital.transpose()?);
         if let Some(unknown) = self.only.iter().find(|id| {
             figures.iter().all(|figure| figure.id != **id)

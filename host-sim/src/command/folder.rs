@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use host_sim::draw::DrawError;
-use tempfile::NamedTempFile;
+use host_sim::files::Draft;
 use thiserror::Error;
 
 /// A folder that cannot be written to.
@@ -19,13 +19,13 @@ pub(super) struct FolderError {
 /// Files on their way into a folder.
 pub(super) struct Folder {
     path: PathBuf,
-    files: Vec<(NamedTempFile, String)>,
+    files: Vec<Draft>,
 }
 
 impl Folder {
     /// Makes the folder if need be, and makes sure that it can be written to.
     pub(super) fn open(path: PathBuf) -> Result<Self, FolderError> {
-        match fs::create_dir_all(&path).and_then(|()| temporary(&path)) {
+        match fs::create_dir_all(&path).and_then(|()| Draft::new(path.join("trace.csv"))) {
             Ok(_) => Ok(Self {
                 path,
                 files: Vec::new(),
@@ -44,24 +44,25 @@ impl Folder {
     /// Prepares a file.
     pub(super) fn write(
         &mut self,
-        name: impl Into<String>,
+        name: impl AsRef<Path>,
         fill: impl FnOnce(&mut dyn Write) -> Result<(), DrawError>,
     ) -> Result<(), FolderError> {
         let filled = || {
-            let mut writer = BufWriter::new(temporary(&self.path)?);
+            let mut writer = BufWriter::new(Draft::new(self.path.join(name))?);
             fill(&mut writer)?;
-            Ok(writer.into_inner().map_err(io::Error::from)?)
+            Ok(writer
+                .into_inner()
+                .map_err(io::IntoInnerError::into_error)?)
         };
         let file = filled().map_err(|problem| self.error(problem))?;
-        self.files.push((file, name.into()));
+        self.files.push(file);
         Ok(())
     }
 
     /// Puts all prepared files in place.
     pub(super) fn close(mut self) -> Result<(), FolderError> {
-        for (file, name) in std::mem::take(&mut self.files) {
-            file.persist(self.path.join(name))
-                .map_err(|failed| self.error(failed.error.into()))?;
+        for file in std::mem::take(&mut self.files) {
+            file.finish().map_err(|failed| self.error(failed.into()))?;
         }
         Ok(())
     }
@@ -72,15 +73,4 @@ impl Folder {
             problem,
         }
     }
-}
-
-fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // As any other new file; the default is for its owner alone.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.prefix(".host-sim-").tempfile_in(folder)
 }

@@ -13,7 +13,7 @@ use host_sim::run::default_max_ticks;
 use host_sim::world::{self, ReadOptions};
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 
-use super::Done;
+use super::{Done, tell_notes};
 
 /// Where the world is served unless said otherwise.
 const WORLD_PORT: u16 = 47100;
@@ -73,6 +73,7 @@ pub(crate) struct Robot {
 impl World {
     pub(crate) fn run(self) -> Done {
         let world = Arc::new(world::World::read(&self.map, &ReadOptions::default())?);
+        tell_notes(&self.map, &world);
         let starts = world.place(self.robots.into(), &world.default_starts(), false)?;
         let max_ticks = default_max_ticks(&world.reachable(&starts), PlannerKind::Explorer);
         let server = Server::open(WorldOptions {

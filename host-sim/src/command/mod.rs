@@ -14,6 +14,7 @@ mod report;
 mod survey;
 
 use std::error::Error;
+use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) use compare::Compare;
@@ -24,6 +25,13 @@ pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
 pub(crate) use live::{Robot, World};
 pub(crate) use survey::Survey;
+
+/// Tells the user what there is to say about how a map was read.
+fn tell_notes(path: &Path, world: &host_sim::world::World) {
+    for note in world.notes() {
+        eprintln!("note: {}: {note}", path.display());
+    }
+}
 
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;

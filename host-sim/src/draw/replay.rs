@@ -16,7 +16,10 @@ pub struct Replay<'a> {
     seen: Vec<bool>,
     seen_cells: u32,
     positions: Vec<Cell>,
+    /// The next record.
     next: usize,
+    /// The next tick.
+    now: u32,
 }
 
 impl<'a> Replay<'a> {
@@ -32,20 +35,22 @@ impl<'a> Replay<'a> {
             seen_cells: 0,
             positions: scenario.starts.clone(),
             next: 0,
+            now: 0,
         }
     }
 
-    /// Plays the next tick; false if there is none.
+    /// Plays the next tick, in which perhaps nobody lived; false if there is none.
     pub fn tick(&mut self) -> bool {
         let rest = &self.trace.records[self.next..];
-        let Some(tick) = rest.first().map(|record| record.tick) else {
+        if rest.is_empty() {
             return false;
-        };
-        let records = rest.iter().take_while(|record| record.tick == tick);
-        for record in records {
+        }
+        let now = self.now;
+        for record in rest.iter().take_while(|record| record.tick <= now) {
             self.play(record);
             self.next += 1;
         }
+        self.now += 1;
         true
     }
 

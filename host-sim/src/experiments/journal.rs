@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::execute::Shard;
 use super::row::Row;
+use crate::files;
 
 /// The rows of one shard, in `parts/I-of-N.csv` of an output folder. Each row
 /// goes to the file as soon as it is known, in one piece.
@@ -59,7 +60,8 @@ impl Journal {
         let open = || {
             fs::create_dir_all(&folder)?;
             if path.exists() {
-                fs::write(&path, whole_lines(&fs::read_to_string(&path)?))?;
+                let text = fs::read_to_string(&path)?;
+                files::write(&path, whole_lines(&text).as_bytes())?;
             }
             OpenOptions::new().append(true).create(true).open(&path)
         };

@@ -8,7 +8,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use super::check::check;
 use super::{COLUMNS, NOWHERE, Record, Trace};
+use crate::excerpt::excerpt;
 use crate::fleet::{
     Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure, Sent,
 };
@@ -31,7 +33,10 @@ pub enum TraceError {
     #[error("cannot be read: {0}")]
     Io(#[from] io::Error),
     /// See the message.
-    #[error("line 1: expected the JSON header of a trace: {0}; is this a trace file?")]
+    #[error(
+        "line 1: expected the JSON header of a trace: {}; is this a trace file?",
+        excerpt(&.0.to_string())
+    )]
     Header(#[from] serde_json::Error),
     /// See the message.
     #[error(
@@ -66,7 +71,7 @@ pub enum TraceError {
     #[error("the header's survey: {0}; it was edited or damaged")]
     Survey(String),
     /// See the message.
-    #[error("line {line}: expected {expected}, found {found:?}")]
+    #[error("line {line}: expected {expected}, found \"{found}\"")]
     Line {
         /// Which line, from 1.
         line: usize,
@@ -134,7 +139,7 @@ impl Kind {
         if (&*label.format, label.version) != (self.format, self.version) {
             return Err(TraceError::Format {
                 reads: self,
-                format: label.format,
+                format: excerpt(&label.format),
                 version: label.version,
             });
         }
@@ -144,7 +149,7 @@ impl Kind {
             return Err(TraceError::Line {
                 line: 2,
                 expected: format!("the columns {}", self.columns.join(",")),
-                found: columns,
+                found: excerpt(&columns),
             });
         }
         let records = lines
@@ -154,7 +159,7 @@ impl Kind {
                 parse(&text).ok_or_else(|| TraceError::Line {
                     line,
                     expected: format!("{} numbers with commas between", self.columns.len()),
-                    found: text,
+                    found: excerpt(&text),
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -164,8 +169,9 @@ impl Kind {
                 found: records.len(),
             });
         }
-        let (expected, found) = (label.digest, digest(&records));
-        if found != expected {
+        let found = digest(&records);
+        if found != label.digest {
+            let expected = excerpt(&label.digest);
             return Err(TraceError::Digest { expected, found });
         }
         Ok((header, records))
@@ -259,16 +265,16 @@ impl Trace {
         Ok(())
     }
 
-    /// Reads a trace, and checks that it is whole.
+    /// Reads a trace, and checks that it is whole and that a run can have left it:
+    /// pictures need not check again.
     ///
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
         let (header, records) = KIND.read::<Header, _>(from, parse_record, super::digest)?;
-        Ok(Self {
-            scenario: header.scenario()?,
-            records,
-        })
+        let scenario = header.scenario()?;
+        check(&scenario, &records)?;
+        Ok(Self { scenario, records })
     }
 }
 

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use planner_core::{Cell, Direction, RobotId};
+use planner_core::{Cell, Direction, Extent, RobotId};
 
 use super::*;
 use crate::fleet::{
@@ -9,7 +9,7 @@ use crate::fleet::{
 use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::run::{Options, run};
-use crate::world::{Family, Starts, generate};
+use crate::world::{Family, Starts, World, generate};
 
 fn trace() -> Trace {
     let world = Arc::new(generate(Family::Rooms, 40, 30, 7).unwrap());
@@ -176,4 +176,124 @@ fn the_bytes_of_a_record_are_as_documented() {
         ]
     );
     assert_eq!(record.after(), Cell::new(6, -3));
+}
+
+/// The message on reading the trace with some records changed and its digest mended.
+fn message(change: impl FnOnce(&mut Trace)) -> String {
+    let mut trace = trace();
+    change(&mut trace);
+    Trace::read(text(&trace).as_bytes())
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn records_that_no_run_leaves_are_refused_with_their_line() {
+    let says = |message: String, words: &[&str]| {
+        for word in words {
+            assert!(message.contains(word), "no {word:?} in {message}");
+        }
+    };
+    // The third record stands in line 5: robot 0 in tick 1, as robot 2 comes late.
+    let on = |change: &dyn Fn(&mut Record)| message(|trace| change(&mut trace.records[2]));
+    says(
+        on(&|it| it.at.x = 40),
+        &["line 5", "inside the world of 40×30 cells", "40,"],
+    );
+    says(
+        on(&|it| it.at = Cell::new(-7, -7)),
+        &["line 5", "inside", "-7,-7"],
+    );
+    says(
+        on(&|it| it.at = Cell::new(0, 0)),
+        &["line 5", "where it was", "0,0"],
+    );
+    says(
+        on(&|it| it.robot = 3),
+        &["line 5", "a robot from 0 to 2", "\"3\""],
+    );
+    says(
+        on(&|it| it.action = 18),
+        &["line 5", "an action, 0 to 17 or 32 to"],
+    );
+    says(on(&|it| it.action = 200), &["line 5", "an action", "200"]);
+    says(
+        on(&|it| it.goal = Some(Cell::new(3, 30))),
+        &["line 5", "a goal inside", "3,30"],
+    );
+    says(
+        on(&|it| it.goal = Some(Cell::new(-1, 5))),
+        &["line 5", "a goal", "-1,5"],
+    );
+    says(
+        on(&|it| it.known = 1201),
+        &["line 5", "1200 known cells", "1201"],
+    );
+    says(on(&|it| it.tick = 0), &["line 5", "once a tick", "robot 0"]);
+    says(on(&|it| it.tick = u32::MAX), &["line 5", "by the header"]);
+    says(
+        on(&|it| it.tick = 2),
+        &["line 5", "tick 1, as no robot arrives"],
+    );
+    let back = message(|trace| trace.records[4].tick = 0);
+    says(back, &["line 7", "ticks in order", "tick 0"]);
+    let out = message(|trace| {
+        let start = Cell::new(0, 3);
+        trace.scenario.world =
+            Arc::new(World::from_fn("open", Extent::new(9, 9), |_| false).unwrap());
+        trace.scenario.starts = vec![start; 3];
+        trace.records.truncate(1);
+        trace.records[0].at = start;
+        trace.records[0].goal = None;
+        trace.records[0].known = 0;
+        trace.records[0].action = Direction::West as u8;
+    });
+    says(out, &["line 3", "a step that ends inside", "-1,3"]);
+}
+
+#[test]
+fn a_gap_ends_where_somebody_comes_and_is_not_endless() {
+    let late = |tick: u32| {
+        let mut trace = trace();
+        trace.records.truncate(1);
+        let mut last = trace.records[0];
+        last.at = last.after();
+        last.tick = tick;
+        trace.records.push(last);
+        trace.scenario.max_ticks = u32::MAX;
+        trace.scenario.faults.restarts = vec![Restart {
+            robot: RobotId(0),
+            tick,
+        }];
+        Trace::read(text(&trace).as_bytes()).map_err(|error| error.to_string())
+    };
+    assert_eq!(late(900_000).unwrap().ticks(), 900_001);
+    let error = late(4_000_000_000).unwrap_err();
+    assert!(error.contains("line 4"), "{error}");
+    assert!(error.contains("ticks without a record"), "{error}");
+}
+
+#[test]
+fn hostile_words_are_quoted_in_short() {
+    let text = text(&trace());
+    let long = "\u{1b}[2J".to_owned() + &"9".repeat(100_000);
+    for hostile in [
+        text.replacen("\n0,1,", &format!("\n{long},1,"), 1),
+        text.replacen("tick,robot", &long, 1),
+        text.replacen(
+            "host-sim trace",
+            &format!("\\u001b{}", "9".repeat(9_000)),
+            1,
+        ),
+        text.replacen(
+            "\"closest\"",
+            &format!("\"\\u001b{}\"", "9".repeat(9_000)),
+            1,
+        ),
+        long,
+    ] {
+        let error = Trace::read(hostile.as_bytes()).unwrap_err().to_string();
+        assert!(error.chars().count() < 300, "{error}");
+        assert!(!error.contains('\u{1b}'), "{error:?}");
+    }
 }

@@ -1,16 +1,17 @@
 //! What can be wrong with a map, said so that the reader can mend it.
 
 use std::io;
-use std::path::PathBuf;
 
 use planner_core::{Cell, Extent};
 use thiserror::Error;
 
+use super::foreign::Foreign;
 use super::grid::LARGEST;
+use crate::excerpt::printable;
 
 /// A world that cannot be had, and why.
 #[derive(Debug, Error)]
-#[error("{map}: {problem}")]
+#[error("{}: {problem}", printable(map))]
 pub struct WorldError {
     /// The file as it was named, or the name of a world without a file.
     pub map: String,
@@ -31,6 +32,10 @@ pub enum Problem {
     Unreadable(io::Error),
     #[error("cannot be written: {0}; check that the folder exists and may be written to")]
     Unwritable(io::Error),
+    #[error("has more than {most} bytes; expected a map of at most {LARGEST} cells")]
+    TooLong { most: u64 },
+    #[error("is a folder; name a map file in it")]
+    Folder,
     #[error(
         "unknown ending `{found}`; expected one of {expected}: \
          rename the file or convert it to one of these formats"
@@ -39,19 +44,42 @@ pub enum Problem {
         found: String,
         expected: &'static str,
     },
+    #[error("unknown ending `{found}`, and is {what}; expected one of {expected}: {advice}")]
+    ForeignEnding {
+        found: String,
+        what: &'static str,
+        expected: &'static str,
+        advice: &'static str,
+    },
+    #[error("is {what}, whatever its name says; {advice}")]
+    Foreign {
+        what: &'static str,
+        advice: &'static str,
+    },
+    #[error("holds a {format} picture, whatever its name says; name it .{ending}")]
+    Misnamed {
+        format: &'static str,
+        ending: &'static str,
+    },
     #[error("is not UTF-8 text; expected {expected}")]
     NotText { expected: &'static str },
+    #[error("is not UTF-8 text but UTF-16; expected {expected}: save it as UTF-8")]
+    Utf16 { expected: &'static str },
 
     #[error(
         "is not a complete image ({0}); expected a whole PNG or PGM file: \
          copy it again or export it again"
     )]
-    BrokenImage(image::ImageError),
-    #[error("the image {} that key `image` names cannot be used: {problem}", path.display())]
-    RosImage {
-        path: PathBuf,
-        problem: Box<Problem>,
-    },
+    BrokenImage(String),
+    #[error("has more pixels than can be decoded; scale the picture down")]
+    TooManyPixels,
+    #[error(
+        "has no free cell: {0}; robots do not enter what is unknown: \
+         paint white what is free"
+    )]
+    NothingKnown(String),
+    #[error("the image {path} that key `image` names cannot be used: {problem}")]
+    RosImage { path: String, problem: Box<Problem> },
     #[error("key `{key}`: expected {expected}, found {found}")]
     Key {
         key: &'static str,
@@ -115,7 +143,7 @@ pub enum Problem {
         digit: char,
     },
     #[error(
-        "line {line}: expected {expected}, found {found:?}; \
+        "line {line}: expected {expected}, found \"{found}\"; \
          mend the MovingAI header, or name a plain text map .txt"
     )]
     Header {
@@ -166,7 +194,14 @@ impl Problem {
     pub(super) fn from_read(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::NotFound => Self::Missing,
+            io::ErrorKind::IsADirectory => Self::Folder,
             _ => Self::Unreadable(error),
         }
+    }
+}
+
+impl From<Foreign> for Problem {
+    fn from(Foreign { what, advice }: Foreign) -> Self {
+        Self::Foreign { what, advice }
     }
 }

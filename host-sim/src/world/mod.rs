@@ -7,6 +7,7 @@
 
 mod dice;
 mod error;
+pub(crate) mod foreign;
 mod generate;
 mod grid;
 mod movingai;

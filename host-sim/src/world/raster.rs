@@ -1,89 +1,205 @@
 //! Images as maps.
 
+use std::io::Cursor;
+
 use image::codecs::png::PngEncoder;
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
-use image::{GrayImage, ImageEncoder, Luma};
+use image::{
+    DynamicImage, GenericImageView, GrayImage, ImageDecoder, ImageEncoder, ImageError, ImageReader,
+    Limits, Luma, Rgba,
+};
 use planner_core::Cell;
 
 use super::World;
 use super::error::Problem;
+use super::foreign::Foreign;
 use super::grid::{self, Grid, LARGEST};
+use crate::excerpt::excerpt;
 
 const FREE: u8 = 255;
 const OBSTACLE: u8 = 0;
 /// Most pixels along a side of an image that is written.
 const LONGEST_SIDE: u32 = 1 << 14;
 
+/// Largest picture that is decoded, in bytes: one of [`LONGEST_SIDE`] in gray, and more.
+const MOST_BYTES: u64 = 1 << 29;
+/// map_saver's gray for what no ray has met.
+const UNKNOWN: f64 = 205.0;
+
+/// One pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pixel {
+    /// Mean of red, green and blue, 0 (dark) to 255 (light), as in map_server.
+    pub(super) mean: f64,
+    /// 0 (nothing is there) to 255; `None` in a picture without transparency.
+    pub(super) alpha: Option<u8>,
+}
+
+impl Pixel {
+    /// Whether anything shines through.
+    pub(super) fn is_transparent(&self) -> bool {
+        self.alpha.is_some_and(|alpha| alpha < 255)
+    }
+}
+
 /// What one pixel says about the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ground {
     Free,
+    /// Free, but not for certain.
+    Costly,
     Obstacle,
     Unknown,
 }
 
-/// The reading of plain images: what is darker than `threshold` is an obstacle.
-pub(super) fn dark(gray: u8, threshold: u8) -> Ground {
-    if gray < threshold {
+/// The reading of plain images: what is darker than `threshold` is an obstacle, white
+/// shining through; else what is transparent, or has map_saver's gray, is unknown.
+pub(super) fn plain(pixel: Pixel, threshold: u8) -> Ground {
+    let alpha = f64::from(pixel.alpha.unwrap_or(255));
+    if pixel.mean * alpha + 255.0 * (255.0 - alpha) < 255.0 * f64::from(threshold) {
         Ground::Obstacle
+    } else if pixel.is_transparent() || pixel.mean == UNKNOWN {
+        Ground::Unknown
     } else {
         Ground::Free
     }
 }
 
-/// An image in shades of gray.
-pub(super) struct Image(GrayImage);
+/// How many pixels are what, of those that the reader should hear about.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    pub(super) pixels: u64,
+    /// Unknown, transparent ones included.
+    pub(super) unknown: u64,
+    /// Unknown and transparent.
+    pub(super) transparent: u64,
+    /// [`Ground::Costly`].
+    pub(super) costly: u64,
+}
 
-impl Image {
-    /// Decodes PNG or PGM, told apart by their first bytes. Colours become the
-    /// mean of their channels, as in map_server; transparency lets white through.
-    pub(super) fn decode(bytes: &[u8]) -> Result<Self, Problem> {
-        let image = image::load_from_memory(bytes)
-            .map_err(Problem::BrokenImage)?
-            .into_rgba8();
-        let gray = GrayImage::from_fn(image.width(), image.height(), |x, y| {
-            let [red, green, blue, alpha] = image.get_pixel(x, y).0.map(u32::from);
-            let mean = (red + green + blue) / 3;
-            Luma([((mean * alpha + 255 * (255 - alpha)) / 255) as u8])
-        });
-        Ok(Self(gray))
-    }
-
-    /// Cuts the image into cells of `side`×`side` pixels, by the rule of
-    /// [`World::read`].
-    pub(super) fn cut(&self, side: u32, ground: impl Fn(u8) -> Ground) -> Result<Grid, Problem> {
-        if side == 0 {
-            return Err(Problem::NoPixelsPerCell);
-        }
-        let (width, height) = self.0.dimensions();
-        let extent = grid::checked_extent(
-            width.div_ceil(side) as usize,
-            height.div_ceil(side) as usize,
-            || {
-                let enough = width
-                    .div_ceil(LARGEST.width.into())
-                    .max(height.div_ceil(LARGEST.height.into()));
-                format!("use --pixels-per-cell {enough} or more")
-            },
-        )?;
-        Ok(Grid::from_fn(extent, |cell| {
-            self.is_blocked(cell, side, &ground)
-        }))
-    }
-
-    fn is_blocked(&self, cell: Cell, side: u32, ground: impl Fn(u8) -> Ground) -> bool {
-        let (left, top) = (cell.x as u32 * side, cell.y as u32 * side);
-        let mut free = 0;
-        for y in top..self.0.height().min(top.saturating_add(side)) {
-            for x in left..self.0.width().min(left.saturating_add(side)) {
-                match ground(self.0.get_pixel(x, y).0[0]) {
-                    Ground::Obstacle => return true,
-                    Ground::Free => free += 1,
-                    Ground::Unknown => {}
-                }
+impl Tally {
+    fn add(&mut self, ground: Ground, pixel: Pixel) {
+        self.pixels += 1;
+        match ground {
+            Ground::Unknown => {
+                self.unknown += 1;
+                self.transparent += u64::from(pixel.is_transparent());
             }
+            Ground::Costly => self.costly += 1,
+            Ground::Free | Ground::Obstacle => {}
         }
-        2 * free <= u64::from(side) * u64::from(side)
+    }
+
+    /// "12 of 100 pixels are unknown", and why.
+    pub(super) fn unknown_in_words(&self, why: &str) -> String {
+        let Self {
+            pixels,
+            unknown,
+            transparent,
+            ..
+        } = self;
+        let because = match (*transparent, unknown - transparent) {
+            (0, _) => why.into(),
+            (_, 0) => "transparent".into(),
+            (transparent, rest) => format!("{transparent} transparent, {rest} {why}"),
+        };
+        format!("{unknown} of {pixels} pixels are unknown ({because})")
+    }
+}
+
+/// A picture cut into cells.
+pub(super) struct Cut {
+    pub(super) grid: Grid,
+    pub(super) tally: Tally,
+}
+
+/// Decodes PNG or PGM, told apart by their first bytes, and cuts the picture into cells
+/// of `side`×`side` pixels, by the rule of [`World::read`]. Whether it fits is seen from
+/// its header, before a pixel is decoded.
+pub(super) fn cut(
+    bytes: &[u8],
+    side: u32,
+    ground: impl Fn(Pixel) -> Ground,
+) -> Result<Cut, Problem> {
+    if side == 0 {
+        return Err(Problem::NoPixelsPerCell);
+    }
+    if let Some(foreign) = Foreign::of_bytes(bytes) {
+        return Err(foreign.into());
+    }
+    let broken = |error: ImageError| match error {
+        ImageError::Limits(_) => Problem::TooManyPixels,
+        error => Problem::BrokenImage(excerpt(&error.to_string())),
+    };
+    if bytes.is_empty() {
+        return Err(Problem::BrokenImage("the file is empty".into()));
+    }
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|error| Problem::BrokenImage(error.to_string()))?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MOST_BYTES);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(broken)?;
+    let (width, height) = decoder.dimensions();
+    if width == 0 || height == 0 {
+        return Err(Problem::Empty);
+    }
+    if decoder.total_bytes() > MOST_BYTES {
+        return Err(Problem::TooManyPixels);
+    }
+    let extent = grid::checked_extent(
+        width.div_ceil(side) as usize,
+        height.div_ceil(side) as usize,
+        || {
+            let enough = width
+                .div_ceil(LARGEST.width.into())
+                .max(height.div_ceil(LARGEST.height.into()));
+            format!("use --pixels-per-cell {enough} or more")
+        },
+    )?;
+    let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+
+    let has_alpha = image.color().has_alpha();
+    let mut tally = Tally::default();
+    // Of each cell, whether it has an obstacle, and its free pixels.
+    let mut cells = vec![(false, 0u64); extent.cells() as usize];
+    for (x, y, Rgba([red, green, blue, alpha])) in image.pixels() {
+        let sum = u32::from(red) + u32::from(green) + u32::from(blue);
+        let pixel = Pixel {
+            mean: f64::from(sum) / 3.0,
+            alpha: has_alpha.then_some(alpha),
+        };
+        let ground = ground(pixel);
+        tally.add(ground, pixel);
+        let index = (y / side) as usize * usize::from(extent.width) + (x / side) as usize;
+        let Some((blocked, free)) = cells.get_mut(index) else {
+            continue;
+        };
+        match ground {
+            Ground::Obstacle => *blocked = true,
+            Ground::Free | Ground::Costly => *free += 1,
+            Ground::Unknown => {}
+        }
+    }
+    let whole = u64::from(side) * u64::from(side);
+    let mut cells = cells
+        .into_iter()
+        .map(|(blocked, free)| blocked || 2 * free <= whole);
+    let grid = Grid::from_fn(extent, |_| cells.next() != Some(false));
+    Ok(Cut { grid, tally })
+}
+
+impl Cut {
+    /// The world, if it has a free cell.
+    pub(super) fn world(self, name: &str, why_unknown: &str) -> Result<World, Problem> {
+        let tally = self.tally;
+        World::from_grid(name, self.grid).map_err(|problem| match problem {
+            Problem::NoFreeCell if tally.unknown > 0 => {
+                Problem::NothingKnown(tally.unknown_in_words(why_unknown))
+            }
+            problem => problem,
+        })
     }
 }
 

@@ -23,7 +23,10 @@ pub(super) fn parse(name: &str, text: &str) -> Result<World, Problem> {
                     line,
                     column,
                     found: character,
-                    expected: "`#` (obstacle), `.` or space (free), or a digit (start)",
+                    expected: match character {
+                        '\t' => "spaces in place of tabs, one for each free cell",
+                        _ => "`#` (obstacle), `.` or space (free), or a digit (start)",
+                    },
                 })?;
                 if starts[start].replace(cell).is_some() {
                     return Err(Problem::RepeatedStart {

@@ -1,17 +1,20 @@
 //! From a world to a file.
 
-use std::fs;
 use std::path::Path;
 
 use super::World;
 use super::error::{Problem, WorldError};
 use super::raster;
 use super::read::{ending, unknown_ending};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::files::write as write_file;
+#[cfg(target_arch = "wasm32")]
+use std::fs::write as write_file;
 
 impl World {
     /// Writes the map in the format of the ending: `.png` or `.pgm` (a square
     /// of `pixels_per_cell` pixels for each cell), `.map` (MovingAI), `.txt`.
-    /// Only text maps keep the starts.
+    /// Only text maps keep the starts. The file appears whole or not at all.
     ///
     /// # Errors
     /// Another ending; a file that cannot be written; `pixels_per_cell` 0 or
@@ -26,7 +29,7 @@ impl World {
             _ => Err(unknown_ending(path, ".png, .pgm, .map or .txt")),
         };
         bytes
-            .and_then(|bytes| fs::write(path, bytes).map_err(Problem::Unwritable))
+            .and_then(|bytes| write_file(path, &bytes).map_err(Problem::Unwritable))
             .map_err(|problem| problem.of(path.display().to_string()))
     }
 }

@@ -45,7 +45,7 @@ fn files_that_are_not_there_or_not_files() {
     let unreadable = World::read(path, &pixels(1)).unwrap_err();
     assert_says(
         &unreadable.to_string(),
-        &["folder.map: cannot be read", "may read"],
+        &["folder.map: is a folder", "name a map file"],
     );
     let unwritable = world(&["."])
         .write(folder.path().join("no/a.png"), 1)
@@ -233,7 +233,7 @@ fn map_server_files() {
     assert_says(&with("0.05", ".nan"), &["key `resolution`", "found NaN"]);
     assert_says(
         &with("[0, 0, 0]", "[0, 0]"),
-        &["key `origin`", "found [0.0, 0.0]"],
+        &["key `origin`", "found [0, 0]"],
     );
     assert_says(
         &with("0.65", "65"),
@@ -247,15 +247,15 @@ fn map_server_files() {
         &with("negate: 0", "negate: 2"),
         &["key `negate`", "0 or 1", "found 2"],
     );
-    let mode = with("negate: 0", "negate: 0\nmode: scale");
-    assert_says(&mode, &["key `mode`: expected `trinary`", "found `scale`"]);
+    let mode = with("negate: 0", "negate: 0\nmode: costs");
+    assert_says(&mode, &["key `mode`: expected `trinary`", "found `costs`"]);
+    let twice = with("negate: 0", "negate: 0\nNegate: 1");
+    assert_says(&twice, &["key `negate` stands twice"]);
+    let folder = with("image: gone.pgm", "image: ''");
+    assert_says(&folder, &["key `image`", "found nothing"]);
     assert_says(
         &with("0.05", "five"),
-        &[
-            "a.yaml: `resolution: five`",
-            "floating point at line 2",
-            "expected the keys",
-        ],
+        &["key `resolution`", "above 0", "found `five`"],
     );
     assert_says(
         &message("a.yaml", "- 1\n"),
@@ -273,6 +273,167 @@ fn map_server_files() {
         &message_with("a.yaml", YAML, &metres(f64::NAN)),
         &["--cell-size NaN"],
     );
+}
+
+#[test]
+fn files_of_other_kinds_are_named() {
+    let named = |name: &str, bytes: &[u8], words: &[&str]| {
+        let message = message(name, bytes);
+        assert_says(&message, words);
+        assert!(message.len() < 500, "{message}");
+    };
+    let magick = ["PNG and PGM pictures are read", "magick FILE map.png"];
+    for (bytes, what) in [
+        (&b"BM\x36\0"[..], "a BMP picture"),
+        (b"\xff\xd8\xff\xe0", "a JPEG picture"),
+        (b"II*\0\x08", "a TIFF picture"),
+        (b"MM\0*\0", "a TIFF picture"),
+        (b"GIF89a", "a GIF picture"),
+        (b"RIFF\0\0\0\0WEBPVP8 ", "a WebP picture"),
+    ] {
+        for name in ["a.png", "a.pgm", "a.txt", "a.map", "a.yaml"] {
+            named(
+                name,
+                bytes,
+                &[&format!("{name}: is {what}"), magick[0], magick[1]],
+            );
+        }
+        named(
+            "a.img",
+            bytes,
+            &["unknown ending `img`, and is", what, magick[0]],
+        );
+    }
+    for (name, what) in [
+        ("a.JPG", "a JPEG picture"),
+        ("a.jpeg", "a JPEG picture"),
+        ("a.BMP", "a BMP picture"),
+        ("a.tif", "a TIFF picture"),
+        ("a.webp", "a WebP picture"),
+    ] {
+        named(name, b"", &["unknown ending", what, magick[0]]);
+    }
+    let tree = b"# Octomap OcTree file\n# (feel free)\nid ColorOcTree\n";
+    named(
+        "a.ot",
+        tree,
+        &[
+            "an OctoMap tree of voxels",
+            "survey --terrain",
+            "convert_octree",
+        ],
+    );
+    named(
+        "a.bt",
+        b"# Octomap OcTree binary file\n",
+        &["(.bt)", "survey --terrain"],
+    );
+    named(
+        "a.pcd",
+        b"# .PCD v0.7\n",
+        &["a point cloud", "octomap_server"],
+    );
+    named(
+        "a.ply",
+        b"ply\nformat ascii 1.0\n",
+        &["a point cloud", "octomap_server"],
+    );
+    named("a.LAS", b"LASF", &["a point cloud", "octomap_server"]);
+    named(
+        "a.txt",
+        b"o---o---o\n|       |\n",
+        &["a micromouse maze", "`#`"],
+    );
+    named(
+        "a.png",
+        b"version https://git-lfs.github.com/spec/v1\n",
+        &["git lfs pull"],
+    );
+    named("a.pgm", b"<!DOCTYPE html>", &["a web page", "download"]);
+    named(
+        "trace.csv",
+        b"{\"format\":\"host-sim trace\"",
+        &["the trace of a run"],
+    );
+    named(
+        "a.txt",
+        b"\x89PNG\r\n\x1a\n",
+        &["holds a PNG picture", "name it .png"],
+    );
+    named(
+        "a.yaml",
+        b"P5\n1 1\n255\n\xff",
+        &["holds a PGM picture", "name it .pgm"],
+    );
+    named(
+        "a",
+        b"P2\n1 1\n1\n1",
+        &["holds a PGM picture", "name it .pgm"],
+    );
+    named("a", b"...\n", &["unknown ending ``", ".txt"]);
+    named("a.txt", b"\xff\xfe.\0.\0", &["UTF-16", "save it as UTF-8"]);
+    named(
+        "a.txt",
+        b"..\n.\t\n",
+        &["line 2, column 2", "'\\t'", "in place of tabs"],
+    );
+    for name in ["a.png", "a.pgm"] {
+        named(name, b"", &["the file is empty"]);
+    }
+    for name in ["a.txt", "a.map", "a.yaml"] {
+        named(name, b"", &["expected"]);
+    }
+}
+
+#[test]
+fn an_image_of_another_kind_is_named_under_its_yaml_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let yaml = folder.path().join("a.yaml");
+    fs::write(
+        &yaml,
+        "image: photo.jpg\nresolution: 0.05\norigin: [0, 0, 0]\nnegate: 0\n\
+         occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+    )
+    .unwrap();
+    fs::write(folder.path().join("photo.jpg"), b"\xff\xd8\xff\xe0").unwrap();
+    let error = World::read(&yaml, &pixels(1)).unwrap_err().to_string();
+    assert_says(
+        &error,
+        &[
+            "photo.jpg that key `image` names",
+            "a JPEG picture",
+            "convert it",
+        ],
+    );
+}
+
+#[test]
+fn long_and_hostile_lines_are_quoted_in_short() {
+    let long = "x".repeat(100_000) + "\u{1b}[2J";
+    for (name, text) in [
+        ("a.map", format!("type {long}\n")),
+        ("a.map", format!("\u{1b}]0;{long}\n")),
+        ("a.yaml", format!("- {long}\n")),
+        ("a.yaml", format!("{long}: [\n")),
+        ("a.yaml", format!("resolution: {long}\n")),
+        (
+            "a.yaml",
+            format!("resolution: 1\norigin: [0, 0, \"{long}\"]\n"),
+        ),
+        ("a.txt", format!("\u{1b}{long}\n")),
+        (
+            "a.yaml",
+            format!(
+                "image: {}\nresolution: 1\norigin: [0, 0, 0]\nnegate: 0\n\
+                 occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+                "\"\\e]0;x".to_owned() + &"y".repeat(9_000) + "\""
+            ),
+        ),
+    ] {
+        let message = message(name, text);
+        assert!(message.chars().count() < 400, "{message}");
+        assert!(!message.contains('\u{1b}'), "{message:?}");
+    }
 }
 
 #[test]

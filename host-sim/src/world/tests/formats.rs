@@ -74,6 +74,36 @@ fn a_txt_may_hold_a_movingai_map() {
 }
 
 #[test]
+fn movingai_headers_come_in_any_order() {
+    let folder = folder();
+    let path = folder.path().join("a.map");
+    for map in [
+        "\u{feff}type octile\nheight 1\nwidth 2\nmap\n.@\n",
+        "Width 2\nTYPE octile\n\nheight 1\nmap\n.@\n\n \r\n\n",
+        "height 1\r\nwidth 2\r\ntype octile\r\nmap\r\n.@",
+    ] {
+        fs::write(&path, map).unwrap();
+        let read = World::read(&path, &ReadOptions::default()).unwrap();
+        assert_eq!(read.to_text(), ".#\n", "{map:?}");
+        fs::rename(&path, folder.path().join("a.txt")).unwrap();
+        let read = World::read(folder.path().join("a.txt"), &ReadOptions::default());
+        assert_eq!(read.unwrap().to_text(), ".#\n", "{map:?}");
+    }
+}
+
+#[test]
+fn text_maps_from_any_editor() {
+    let folder = folder();
+    let path = folder.path().join("A.TXT");
+    for map in ["\u{feff}1#\n. \n", "1#\r\n. \r\n\r\n", "1#\n. "] {
+        fs::write(&path, map).unwrap();
+        let read = World::read(&path, &ReadOptions::default()).unwrap();
+        assert_eq!(read.to_text(), "1#\n..\n", "{map:?}");
+        assert_eq!(read.notes(), [""; 0]);
+    }
+}
+
+#[test]
 fn formats_with_cells_of_their_own_ignore_pixels_and_say_so() {
     let folder = folder();
     let path = folder.path().join("a.txt");
@@ -96,7 +126,7 @@ fn thin_walls_stay_and_edges_that_are_half_missing_close() {
 }
 
 #[test]
-fn dark_is_below_the_threshold_and_white_shines_through() {
+fn dark_is_below_the_threshold_and_nothing_is_unknown() {
     let folder = folder();
     let path = folder.path().join("a.png");
     let shades = [
@@ -109,12 +139,21 @@ fn dark_is_below_the_threshold_and_white_shines_through() {
         .save(&path)
         .unwrap();
     let read = World::read(&path, &ReadOptions::default()).unwrap();
-    assert_eq!(read.to_text(), "#..#\n");
+    assert_eq!(read.to_text(), "#.##\n");
+    assert_eq!(
+        read.notes(),
+        [
+            "1 of 4 pixels are unknown (transparent): taken as obstacles; paint white what is \
+          free, or name the YAML file of the map"
+        ]
+    );
     let darker = ReadOptions {
         dark_below: 100,
         ..ReadOptions::default()
     };
-    assert_eq!(World::read(&path, &darker).unwrap().to_text(), "....\n");
+    let read = World::read(&path, &darker).unwrap();
+    assert_eq!(read.to_text(), "..##\n");
+    assert!(read.notes()[0].starts_with("2 of 4"), "{:?}", read.notes());
 }
 
 /// A folder with a map_server map of 4×2 pixels: black, unknown, white, white.
@@ -139,7 +178,13 @@ fn map_server_unknown_is_an_obstacle() {
     let read = World::read(folder.path().join("a.yaml"), &ReadOptions::default()).unwrap();
     assert_eq!(read.to_text(), "##..\n##..\n");
     assert_eq!(read.metres_per_cell(), Some(0.1));
-    assert_eq!(read.notes(), [""; 0]);
+    assert_eq!(
+        read.notes(),
+        [
+            "2 of 8 pixels are unknown (neither occupied nor free by the keys of the file): \
+          taken as obstacles, which no robot enters"
+        ]
+    );
 }
 
 #[test]
@@ -161,9 +206,62 @@ fn cell_size_becomes_whole_pixels() {
         (exact.to_text().as_str(), exact.metres_per_cell()),
         ("#.\n", Some(0.2))
     );
-    assert_eq!(exact.notes(), [""; 0]);
+    assert!(!exact.notes()[0].contains("--cell-size"));
     let rounded = World::read(&path, &metres(0.17)).unwrap();
     assert_eq!(rounded.metres_per_cell(), Some(0.2));
     let note = "--cell-size 0.17 is 1.70 pixels of 0.1 m; cells of 2 pixels, 0.2000 m, are used";
-    assert_eq!(rounded.notes(), [note]);
+    assert_eq!(rounded.notes()[0], note);
+}
+
+#[test]
+fn map_server_keys_in_quotation_marks_and_capitals() {
+    let folder = folder();
+    world(&[".#"])
+        .write(folder.path().join("A.PGM"), 1)
+        .unwrap();
+    let yaml = "\u{feff}Image: 'A.PGM'\nRESOLUTION: \"0.1\"\norigin: ['0', -1.5, \"2e1\"]\n\
+                Negate: 'no'\nOccupied_Thresh: '0.65'\nfree_thresh: \"0.196\"\n\
+                mode: Trinary\nauthor: {name: somebody, age: [1, 2]}\n";
+    fs::write(folder.path().join("A.YAML"), yaml).unwrap();
+    let read = World::read(folder.path().join("A.YAML"), &ReadOptions::default()).unwrap();
+    assert_eq!(read.to_text(), ".#\n");
+    assert_eq!(read.metres_per_cell(), Some(0.1));
+    assert_eq!(read.notes(), [""; 0]);
+}
+
+#[test]
+fn an_origin_that_is_no_pose_is_told() {
+    for nan in ["-nan", "nan", ".nan", "-.inf", "'-nan(ind)'"] {
+        let folder = ros_map(&[("[0, 0, 0]", &format!("[0, 0, {nan}]"))]);
+        let read = World::read(folder.path().join("a.yaml"), &ReadOptions::default());
+        match nan.contains("ind") {
+            true => assert!(read.unwrap_err().to_string().contains("key `origin`")),
+            false => {
+                let notes = read.unwrap().notes().to_vec();
+                assert!(notes[0].starts_with("key `origin` is [0, 0, "), "{notes:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_image_beside_a_moved_map_is_read_and_told() {
+    for image in [
+        "/data/maps/a.pgm",
+        "maps/a.pgm",
+        "C:\\maps\\a.pgm",
+        "..\\a.pgm",
+    ] {
+        let folder = ros_map(&[("image: a.pgm", &format!("image: {image}"))]);
+        let read = World::read(folder.path().join("a.yaml"), &ReadOptions::default()).unwrap();
+        assert_eq!(read.to_text(), "##..\n##..\n");
+        let note = &read.notes()[0];
+        assert!(note.contains(&format!("names {image}")), "{note}");
+        assert!(note.contains("a.pgm lies beside the YAML file"), "{note}");
+    }
+    let gone = ros_map(&[("image: a.pgm", "image: /data/maps/b.pgm")]);
+    let error = World::read(gone.path().join("a.yaml"), &ReadOptions::default());
+    let error = error.unwrap_err().to_string();
+    assert!(error.contains("/data/maps/b.pgm"), "{error}");
+    assert!(error.contains("no such file"), "{error}");
 }

@@ -3,6 +3,7 @@
 mod errors;
 mod fixtures;
 mod formats;
+mod pictures;
 mod places;
 
 use planner_core::{Cell, Extent};

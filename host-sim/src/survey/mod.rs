@@ -2,6 +2,7 @@
 
 pub mod baselines;
 pub mod draw;
+mod error;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod figures;
 mod mapped;
@@ -15,6 +16,7 @@ mod terrain_source;
 mod trace;
 pub mod voxels;
 
+pub use error::SurveyError;
 pub use mapped::octree;
 pub use run::{Here, Host, Stepping, open, run, run_on};
 pub use scenario::{DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario};

@@ -14,6 +14,7 @@
 pub mod chip;
 mod coverage;
 pub mod draw;
+mod excerpt;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod experiments;
 pub mod fleet;

@@ -1,4 +1,4 @@
-//! Fuzzing: planner-core's radio on bytes that no robot would send.
+//! Fuzzing: planner-core's radio on bytes that no robot would send, and files of surveys.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::install;
 use crate::shell::{Command, command};
 
 /// The binaries of `fuzz/`.
-const TARGETS: [&str; 2] = ["decoder", "robot"];
+const TARGETS: [&str; 3] = ["decoder", "robot", "surveys"];
 
 /// Building may take this long, and a last input a little.
 const SLACK: Duration = Duration::from_secs(900);

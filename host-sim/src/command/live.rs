@@ -1,5 +1,6 @@
 //! `host-sim world` and `host-sim robot`.
 
+use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,7 +8,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
-use host_sim::live::{self, RobotOptions, Server, WorldOptions};
+use host_sim::live::{self, Event, RobotOptions, Server, WorldOptions};
 use host_sim::planners::PlannerKind;
 use host_sim::run::default_max_ticks;
 use host_sim::world::{self, ReadOptions};
@@ -21,6 +22,8 @@ const WORLD_PORT: u16 = 47100;
 const ROBOT_PORT: u16 = 47101;
 /// Ticks between two lines of progress.
 const PROGRESS: u32 = 20;
+/// Notes that are printed: strangers may make any number of them.
+const TROUBLES: u32 = 50;
 
 #[derive(Args)]
 pub(crate) struct World {
@@ -80,13 +83,30 @@ impl World {
             absence: Duration::from_secs(self.absence),
             max_ticks,
         })?;
-        println!("listening on {}", server.address()?);
-        let report = server.run(|tick, seen| {
-            if tick.is_multiple_of(PROGRESS) {
-                println!("tick {tick}: {seen} cells seen");
+        let mut to = io::stdout();
+        writeln!(to, "listening on {}", server.address())?;
+        to.flush()?;
+        let mut troubles = 0;
+        let report = server.run(|event| match event {
+            Event::Ticked { tick, .. } => {
+                // A run goes on when nobody reads how.
+                if tick.is_multiple_of(PROGRESS) {
+                    let _ = writeln!(to, "{event}").and_then(|()| to.flush());
+                }
             }
-        })?;
-        println!("{}", serde_json::to_string(&report)?);
+            _ => {
+                troubles += 1;
+                if troubles <= TROUBLES {
+                    eprintln!("note: {event}");
+                }
+            }
+        });
+        if troubles > TROUBLES {
+            eprintln!("note: {} more notes were left out", troubles - TROUBLES);
+        }
+        let mut to = io::stdout();
+        writeln!(to, "{}", serde_json::to_string(&report)?)?;
+        to.flush()?;
         Ok(match report.is_complete() {
             true => ExitCode::SUCCESS,
             false => ExitCode::from(1),
@@ -116,7 +136,9 @@ impl Robot {
                 ..LinkConfig::new()
             },
         })?;
-        println!("{}", serde_json::to_string(&report)?);
+        let mut to = io::stdout();
+        writeln!(to, "{}", serde_json::to_string(&report)?)?;
+        to.flush()?;
         Ok(match report.stop {
             Some(_) => ExitCode::SUCCESS,
             None => ExitCode::from(1),

@@ -189,7 +189,9 @@ impl Scenario {
             return Err(SurveyError::NoRoom {
                 robots: self.robots,
                 extent,
-                most: (1..self.robots).rfind(|&most| fit(most, extent)).unwrap_or(0),
+                most: (1..self.robots)
+                    .rfind(|&most| fit(most, extent))
+                    .unwrap_or(0),
             });
         }
         let altitude = self.limits.min_altitude + 1.0;
@@ -295,7 +297,10 @@ mod tests {
             bad(&|it| it.limits.range = number, &["--range", "at most 12"]);
             bad(&|it| it.limits.step = number, &["--step", "0.1 to 100"]);
             bad(&|it| it.limits.min_altitude = number, &["--min-altitude"]);
-            bad(&|it| it.limits.ceiling = number, &["--ceiling", "at most 500"]);
+            bad(
+                &|it| it.limits.ceiling = number,
+                &["--ceiling", "at most 500"],
+            );
             bad(&|it| it.limits.separation = number, &["--separation"]);
             bad(&|it| it.loss = number.into(), &["--loss", "0 to 1"]);
             bad(&|it| it.skip = number.into(), &["--skip", "0 to 1"]);

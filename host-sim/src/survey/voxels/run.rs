@@ -149,7 +149,7 @@ fn look_for(
 pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, SurveyError> {
     let mut run = Simulation::new(scene, scenario)?;
     while run.step() {}
-    Ok(run.trace)
+    Ok(run.finish())
 }
 
 /// A run that goes on step by step, for whoever wants to watch.
@@ -225,6 +225,11 @@ impl Simulation {
     /// What has happened so far.
     pub fn trace(&self) -> &VoxelTrace {
         &self.trace
+    }
+
+    /// What happened.
+    pub fn finish(self) -> VoxelTrace {
+        self.trace
     }
 
     /// One step of the fleet; false if the run is over, and then nothing changes any more.
@@ -403,7 +408,8 @@ impl VoxelTrace {
 
     /// Whether everything that can be seen was seen, without a violation.
     pub fn complete(&self) -> bool {
-        self.seen.last() == Some(&self.visible) && self.violations == 0
+        let all = Some(&self.visible).filter(|&&all| all > 0);
+        all.is_some() && self.seen.last() == all && self.violations == 0
     }
 
     /// What had been seen after `tick` steps as an octree, free voxels included.

@@ -335,7 +335,7 @@ mod tests {
         let deep = [0x03, 0x00].repeat(40);
         for (bytes, reason) in [
             (file("size 99999999999", &[]), "at most 4194304"),
-            (file("size 4000000", &[0xff; 64]), "middle"),
+            (file("size 4000000", &[0xff; 20]), "middle"),
             (file("size 4000000", &deep), "children"),
             (file("size 3", &deep), "more nodes"),
             (file("size 3", &[0x01, 0x00]), "fewer nodes"),

@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn pixels_without_one_height_are_named() {
         let colour = ImageBuffer::from_fn(4, 4, |x, y| Rgb([7, 7, 7 + (x * y / 6) as u8]));
-        assert!(error(&png(colour), "png").contains("column 2, row 3 is coloured"));
+        assert!(error(&png(colour), "png").contains("column 3, row 2 is coloured"));
         let clear = ImageBuffer::from_fn(4, 4, |x, _| LumaA([9u8, if x == 3 { 0 } else { 255 }]));
         assert!(error(&png(clear), "png").contains("column 3, row 0 is transparent"));
         let fine = ImageBuffer::from_fn(4, 4, |x, y| Luma([(x + y) as u16 * 257 + 1]));

@@ -363,3 +363,47 @@ fn a_robot_among_strange_worlds_says_what_is_strange() {
         assert!(message.chars().count() < 500, "{message}");
     }
 }
+
+/// Ticks are for robots that are there: a run without a pause between its ticks is not
+/// over before anybody can come back.
+#[test]
+fn a_world_waits_for_robots_that_are_all_gone() {
+    let served = Served::start(0);
+    let addresses = free_addresses();
+    let robots = || -> Vec<_> {
+        (0..ROBOTS)
+            .map(|id| robot(id, &served.address, &addresses))
+            .collect()
+    };
+    let first = robots();
+    served.progress();
+    drop(first);
+    std::thread::sleep(Duration::from_millis(500));
+    let second = robots();
+    assert!(served.report().is_complete());
+    for robot in second {
+        assert_eq!(robot.end().0, Some(0));
+    }
+}
+
+/// Who says that it is a robot and then nothing, or half a line, does not keep its place.
+#[test]
+fn a_stranger_in_a_robots_place_is_replaced() {
+    let served = Served::start(0);
+    let mut stranger = served.stranger();
+    stranger
+        .write_all(b"{\"hello\":{\"robot\":1}}\n{\"wai")
+        .unwrap();
+    let mut welcome = String::new();
+    let mut from_world = BufReader::new(stranger.try_clone().unwrap());
+    from_world.read_line(&mut welcome).unwrap();
+    assert!(welcome.contains("welcome"), "{welcome}");
+    let addresses = free_addresses();
+    let robots: Vec<_> = (0..ROBOTS)
+        .map(|id| robot(id, &served.address, &addresses))
+        .collect();
+    assert!(served.report().is_complete());
+    for robot in robots {
+        assert_eq!(robot.end().0, Some(0));
+    }
+}

@@ -201,6 +201,12 @@ impl Server {
         while self.tick < self.options.max_ticks && !self.is_over() {
             let began = Instant::now();
             self.let_in();
+            // Ticks are for those that are there; nobody's would be over in no time.
+            if self.bodies.iter().all(|body| body.line.is_none()) {
+                self.events.drain(..).for_each(&mut tell);
+                std::thread::sleep(Duration::from_millis(5));
+                continue;
+            }
             self.step();
             self.tick += 1;
             self.events.drain(..).for_each(&mut tell);

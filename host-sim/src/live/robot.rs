@@ -112,11 +112,11 @@ impl World {
 
     fn say(&mut self, message: &FromRobot) -> Result<(), LiveError> {
         let said = self.line.say(message, HEARING);
-        said.or_else(|problem| {
+        said.map_err(|problem| {
             // A world that hangs up may have said why.
             match self.line.poll() {
-                Ok(Some(FromWorld::Refused { reason })) => Err(self.refused(&reason)),
-                _ => Err(self.wrong(problem)),
+                Ok(Some(FromWorld::Refused { reason })) => self.refused(&reason),
+                _ => self.wrong(problem),
             }
         })
     }

@@ -6,18 +6,22 @@ const LENGTH: usize = 80;
 /// The first 80 characters of `text`, control characters escaped, and `…` if there are
 /// more: a file may hold anything, and a terminal obeys what it is sent.
 pub(crate) fn excerpt(text: &str) -> String {
-    let mut characters = text.chars();
-    let mut quoted = String::new();
-    for character in characters.by_ref().take(LENGTH) {
+    match text.char_indices().nth(LENGTH) {
+        None => printable(text),
+        Some((end, _)) => printable(&text[..end]) + "…",
+    }
+}
+
+/// All of `text`, with control characters escaped.
+pub(crate) fn printable(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
         match character {
-            '"' | '\'' | '\\' => quoted.push(character),
-            _ => quoted.extend(character.escape_debug()),
+            '"' | '\'' | '\\' => escaped.push(character),
+            _ => escaped.extend(character.escape_debug()),
         }
     }
-    if characters.next().is_some() {
-        quoted.push('…');
-    }
-    quoted
+    escaped
 }
 
 #[cfg(test)]

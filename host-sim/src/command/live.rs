@@ -1,6 +1,5 @@
 //! `host-sim world` and `host-sim robot`.
 
-use std::io::{self, Write};
 use std::net::{Ipv4Addr, SocketAddr};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -83,15 +82,12 @@ impl World {
             absence: Duration::from_secs(self.absence),
             max_ticks,
         })?;
-        let mut to = io::stdout();
-        writeln!(to, "listening on {}", server.address())?;
-        to.flush()?;
+        println!("listening on {}", server.address());
         let mut troubles = 0;
         let report = server.run(|event| match event {
             Event::Ticked { tick, .. } => {
-                // A run goes on when nobody reads how.
                 if tick.is_multiple_of(PROGRESS) {
-                    let _ = writeln!(to, "{event}").and_then(|()| to.flush());
+                    println!("{event}");
                 }
             }
             _ => {
@@ -104,9 +100,7 @@ impl World {
         if troubles > TROUBLES {
             eprintln!("note: {} more notes were left out", troubles - TROUBLES);
         }
-        let mut to = io::stdout();
-        writeln!(to, "{}", serde_json::to_string(&report)?)?;
-        to.flush()?;
+        println!("{}", serde_json::to_string(&report)?);
         Ok(match report.is_complete() {
             true => ExitCode::SUCCESS,
             false => ExitCode::from(1),
@@ -136,9 +130,7 @@ impl Robot {
                 ..LinkConfig::new()
             },
         })?;
-        let mut to = io::stdout();
-        writeln!(to, "{}", serde_json::to_string(&report)?)?;
-        to.flush()?;
+        println!("{}", serde_json::to_string(&report)?);
         Ok(match report.stop {
             Some(_) => ExitCode::SUCCESS,
             None => ExitCode::from(1),

@@ -1,6 +1,5 @@
 //! `host-sim survey`.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -127,12 +126,10 @@ impl Survey {
         folder.write("map.bt", |file| Ok(octree(&trace, all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
-        let mut to = io::stdout().lock();
         match self.json {
-            true => writeln!(to, "{json}")?,
-            false => print(&mut to, &summary, &path)?,
+            true => println!("{json}"),
+            false => print(&summary, &path),
         }
-        to.flush()?;
         if summary.complete {
             return Ok(ExitCode::SUCCESS);
         }
@@ -203,19 +200,17 @@ impl Survey {
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
-        let mut to = io::stdout().lock();
         let seen = trace.seen.last().copied().unwrap_or(0);
         if self.json {
-            writeln!(to, "{json}")?;
+            println!("{json}");
         } else {
             let (name, visible) = (scene.name(), trace.visible);
-            writeln!(to, "{name}: {seen} of {visible} visible voxels seen")?;
-            writeln!(to, "  everything seen    {}", after(trace.ticks_to(1.0)))?;
-            writeln!(to, "  violations         {}", trace.violations)?;
-            writeln!(to, "  trace digest       {}", trace.digest())?;
-            writeln!(to, "  results            {}", path.display())?;
+            println!("{name}: {seen} of {visible} visible voxels seen");
+            println!("  everything seen    {}", after(trace.ticks_to(1.0)));
+            println!("  violations         {}", trace.violations);
+            println!("  trace digest       {}", trace.digest());
+            println!("  results            {}", path.display());
         }
-        to.flush()?;
         if trace.complete() {
             return Ok(ExitCode::SUCCESS);
         }
@@ -312,22 +307,20 @@ fn after(ticks: Option<u32>) -> String {
     ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"))
 }
 
-fn print(to: &mut impl Write, summary: &Summary, out: &Path) -> io::Result<()> {
-    writeln!(
-        to,
+fn print(summary: &Summary, out: &Path) {
+    println!(
         "{}: {} of {} columns seen",
         summary.map, summary.seen_cells, summary.reachable_cells
-    )?;
-    writeln!(to, "  95 % seen          {}", after(summary.ticks_to_95))?;
-    writeln!(to, "  everything seen    {}", after(summary.ticks_to_seen))?;
+    );
+    println!("  95 % seen          {}", after(summary.ticks_to_95));
+    println!("  everything seen    {}", after(summary.ticks_to_seen));
     let stopped = after(summary.ticks_to_stopped);
-    writeln!(to, "  every robot done   {stopped}")?;
+    println!("  every robot done   {stopped}");
     let work = summary.max_work_per_tick;
-    writeln!(to, "  most work          {work} in one tick")?;
-    writeln!(to, "  violations         {}", summary.violations)?;
+    println!("  most work          {work} in one tick");
+    println!("  violations         {}", summary.violations);
     for (number, robot) in summary.robots.iter().enumerate() {
-        writeln!(
-            to,
+        println!(
             "  robot {number:<3} {:>6} steps, {:>6} columns known, {:>5} frames of {:>7} bytes sent, {}",
             robot.steps,
             robot.cells_known,
@@ -338,8 +331,8 @@ fn print(to: &mut impl Write, summary: &Summary, out: &Path) -> io::Result<()> {
                 Some(reason) => reason,
                 None => "had not stopped",
             }
-        )?;
+        );
     }
-    writeln!(to, "  trace digest       {}", summary.trace_digest)?;
-    writeln!(to, "  results            {}", out.display())
+    println!("  trace digest       {}", summary.trace_digest);
+    println!("  results            {}", out.display());
 }

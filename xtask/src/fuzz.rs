@@ -9,7 +9,7 @@ use crate::install;
 use crate::shell::{Command, command};
 
 /// The binaries of `fuzz/`.
-const TARGETS: [&str; 3] = ["decoder", "files", "robot"];
+const TARGETS: [&str; 4] = ["decoder", "files", "robot", "surveys"];
 
 /// Building may take this long, and a last input a little.
 const SLACK: Duration = Duration::from_secs(900);

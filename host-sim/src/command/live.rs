@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use clap::Args;
-use host_sim::live::{self, RobotOptions, Server, WorldOptions};
+use host_sim::live::{self, Event, RobotOptions, Server, WorldOptions};
 use host_sim::planners::PlannerKind;
 use host_sim::run::default_max_ticks;
 use host_sim::world::{self, ReadOptions};
@@ -21,6 +21,8 @@ const WORLD_PORT: u16 = 47100;
 const ROBOT_PORT: u16 = 47101;
 /// Ticks between two lines of progress.
 const PROGRESS: u32 = 20;
+/// Notes that are printed: strangers may make any number of them.
+const TROUBLES: u32 = 50;
 
 #[derive(Args)]
 pub(crate) struct World {
@@ -85,12 +87,24 @@ impl World {
             absence: Duration::from_secs(self.absence),
             max_ticks,
         })?;
-        println!("listening on {}", server.address()?);
-        let report = server.run(|tick, seen| {
-            if tick.is_multiple_of(PROGRESS) {
-                println!("tick {tick}: {seen} cells seen");
+        println!("listening on {}", server.address());
+        let mut troubles = 0;
+        let report = server.run(|event| match event {
+            Event::Ticked { tick, .. } => {
+                if tick.is_multiple_of(PROGRESS) {
+                    println!("{event}");
+                }
             }
-        })?;
+            _ => {
+                troubles += 1;
+                if troubles <= TROUBLES {
+                    eprintln!("note: {event}");
+                }
+            }
+        });
+        if troubles > TROUBLES {
+            eprintln!("note: {} more notes were left out", troubles - TROUBLES);
+        }
         println!("{}", serde_json::to_string(&report)?);
         Ok(match report.is_complete() {
             true => ExitCode::SUCCESS,

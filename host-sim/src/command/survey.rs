@@ -1,67 +1,76 @@
 //! `host-sim survey`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Args;
 use host_sim::medium::MediumKind;
 use host_sim::survey::draw::{
     animate, animation, coverage_plot, oblique_view, top_view, write_png,
 };
-use host_sim::survey::voxels::{self, Scene, VoxelTrace};
+use host_sim::survey::voxels::{self, Scene, Simulation, VoxelTrace};
 use host_sim::survey::{
-    DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, run,
+    DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, open,
 };
 use planner_core::survey::Limits;
+use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
 use super::explore::parse_share;
 use super::folder::Folder;
 
+/// Columns along a side of a terrain of heights, unless said otherwise.
+const SIDE: u16 = 100;
+/// The same of a town of voxels, and the largest.
+const TOWN: u16 = 64;
+
 #[derive(Args)]
 pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
-    /// OctoMap .bt file. town:SEED is a town of voxels, up to 64×64×18, with rooms and
-    /// bridges: there another planner flies, and of the options below only size, robots,
-    /// range, medium, byte-budget, loss, seed, max-ticks, out and json apply.
+    /// OctoMap .bt file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
+    /// rooms and bridges: there another planner flies, a voxel a step, and --planner,
+    /// --step, --min-altitude, --ceiling, --skip and --kill are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
-    /// Columns along a side of a drawn terrain.
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u16).range(8..=512))]
-    size: u16,
-    /// How the robots decide.
-    #[arg(long, value_enum, default_value_t = Planner::CoordinatedSurvey)]
-    planner: Planner,
+    /// Columns along a side of a terrain drawn by a seed: 8 to 512, default 100; of a town
+    /// of voxels 8 to 64, default 64.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(8..=512))]
+    size: Option<u16>,
+    /// How the robots decide. Default: coordinated-survey.
+    #[arg(long, value_enum, hide_default_value = true)]
+    planner: Option<Planner>,
     /// Number of robots.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(1..=64))]
     robots: u8,
-    /// Sensor range in cells, at most 12.
+    /// Sensor range in cells, above the least altitude and at most 12; in a town of voxels a
+    /// whole number from 2.
     #[arg(long, value_name = "R", default_value_t = 8.0)]
     range: f32,
-    /// Longest flight in a step, in cells.
-    #[arg(long, value_name = "A", default_value_t = 2.0)]
-    step: f32,
-    /// Least altitude over ground, in cells.
-    #[arg(long, value_name = "H", default_value_t = 2.0)]
-    min_altitude: f32,
-    /// Greatest height, in cells.
-    #[arg(long, value_name = "Z", default_value_t = 40.0)]
-    ceiling: f32,
+    /// Longest flight in a step, 0.1 to 100 cells. Default: 2.
+    #[arg(long, value_name = "A")]
+    step: Option<f32>,
+    /// Least altitude over ground, in cells. Default: 2.
+    #[arg(long, value_name = "H")]
+    min_altitude: Option<f32>,
+    /// Greatest height, at most 500 cells. Default: 40.
+    #[arg(long, value_name = "Z")]
+    ceiling: Option<f32>,
     /// How robots tell each other what they know: in radio frames of at most 55
     /// bytes, or ideally, all news at once as in the paper.
     #[arg(long, value_name = "NAME", default_value = "radio")]
     medium: MediumKind,
-    /// Bytes that a robot may send by radio in a step on average.
-    #[arg(long, value_name = "BYTES", default_value_t = DEFAULT_BYTE_BUDGET)]
-    byte_budget: u16,
+    /// Bytes that a robot may send by radio in a step on average. Default: 550.
+    #[arg(long, value_name = "BYTES")]
+    byte_budget: Option<u16>,
     /// Share of messages lost, 0 to 1.
     #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
     loss: f64,
-    /// Share of its steps that a robot sleeps through, 0 to 1.
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
-    skip: f64,
-    /// ROBOT@STEP: this robot dies before this step. May be given again.
-    #[arg(long, value_name = "WHO")]
+    /// Share of its steps that a robot sleeps through, 0 to 1. Default: 0.
+    #[arg(long, value_name = "P", value_parser = parse_share)]
+    skip: Option<f64>,
+    /// ROBOT@STEP: this robot (from 0) dies before this step. May be given again.
+    #[arg(long, value_name = "ROBOT@STEP")]
     kill: Vec<Kill>,
     /// Seed of the robots' random choices and of the faults.
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -79,17 +88,29 @@ pub(crate) struct Survey {
 
 impl Survey {
     pub(crate) fn run(self) -> Done {
-        if let Some(scene) = self.terrain.scene(self.size) {
-            return self.run_in(&scene);
+        self.check_budget()?;
+        if matches!(self.terrain, TerrainSource::Town(_)) {
+            self.check_for_voxels()?;
+            let scene = self.terrain.scene(self.size.unwrap_or(TOWN));
+            return self.run_in(&scene.ok_or("a town is a scene")?);
         }
-        let terrain = self.terrain.load(self.size)?;
-        let trace = run(&terrain, &self.scenario())?;
+        if self.size.is_some() && matches!(self.terrain, TerrainSource::File(_)) {
+            return Err(
+                "--size does not apply: a file has as many columns as it has; \
+                        leave --size out"
+                    .into(),
+            );
+        }
+        let terrain = self.terrain.load(self.size.unwrap_or(SIDE))?;
+        let terrain = Arc::new(terrain);
+        let mut run = open(terrain.clone(), &self.scenario())?;
+        let out = self.out;
+        let out = out.unwrap_or_else(|| PathBuf::from("out").join(terrain.name()));
+        let mut folder = Folder::open(out)?;
+        while run.step() {}
+        let trace = run.finish();
         let summary = Summary::new(&trace);
         let json = serde_json::to_string_pretty(&summary)?;
-        let out = self
-            .out
-            .unwrap_or_else(|| PathBuf::from("out").join(terrain.name()));
-        let mut folder = Folder::open(out)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
@@ -105,16 +126,21 @@ impl Survey {
         folder.write("map.bt", |file| Ok(octree(&trace, all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
-        if self.json {
-            println!("{json}");
-        } else {
-            print(&summary, &path);
+        match self.json {
+            true => println!("{json}"),
+            false => print(&summary, &path),
         }
-        Ok(if summary.complete {
-            ExitCode::SUCCESS
-        } else {
-            ExitCode::FAILURE
-        })
+        if summary.complete {
+            return Ok(ExitCode::SUCCESS);
+        }
+        eprintln!(
+            "not complete: {} of {} columns unseen after {} steps, {} violations",
+            summary.reachable_cells - summary.seen_cells,
+            summary.reachable_cells,
+            summary.ticks,
+            summary.violations
+        );
+        Ok(ExitCode::FAILURE)
     }
 
     /// The same in a scene of voxels.
@@ -123,12 +149,17 @@ impl Survey {
             robots: self.robots.into(),
             range: self.range as u8,
             medium: self.medium,
-            byte_budget: self.byte_budget,
+            byte_budget: self.byte_budget.unwrap_or(DEFAULT_BYTE_BUDGET),
             loss: self.loss,
             seed: self.seed,
             max_ticks: self.max_ticks,
         };
-        let trace = voxels::run(scene, &scenario)?;
+        let mut run = Simulation::new(scene, &scenario)?;
+        let out = self.out;
+        let out = out.unwrap_or_else(|| PathBuf::from("out").join(scene.name()));
+        let mut folder = Folder::open(out)?;
+        while run.step() {}
+        let trace = run.finish();
         let work = trace.work.iter().copied();
         let robots: Vec<_> = (0..scenario.robots)
             .map(|robot| voxel_robot(&trace, robot))
@@ -156,10 +187,6 @@ impl Survey {
             "robots": robots,
         });
         let json = serde_json::to_string_pretty(&json)?;
-        let out = self
-            .out
-            .unwrap_or_else(|| PathBuf::from("out").join(scene.name()));
-        let mut folder = Folder::open(out)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
@@ -173,19 +200,13 @@ impl Survey {
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
+        let seen = trace.seen.last().copied().unwrap_or(0);
         if self.json {
             println!("{json}");
         } else {
-            let seen = trace.seen.last().copied().unwrap_or(0);
-            println!(
-                "{}: {seen} of {} visible voxels seen",
-                scene.name(),
-                trace.visible
-            );
-            println!(
-                "  everything seen    after {} ticks",
-                words(trace.ticks_to(1.0))
-            );
+            let (name, visible) = (scene.name(), trace.visible);
+            println!("{name}: {seen} of {visible} visible voxels seen");
+            println!("  everything seen    {}", after(trace.ticks_to(1.0)));
             println!("  violations         {}", trace.violations);
             for (number, stop) in trace.stops.iter().enumerate() {
                 let stop = stop.map(|stop| stop.to_string());
@@ -195,27 +216,75 @@ impl Survey {
             println!("  trace digest       {}", trace.digest());
             println!("  results            {}", path.display());
         }
-        Ok(if trace.complete() {
-            ExitCode::SUCCESS
-        } else {
-            ExitCode::FAILURE
-        })
+        if trace.complete() {
+            return Ok(ExitCode::SUCCESS);
+        }
+        eprintln!(
+            "not complete: {} of {} visible voxels unseen after {} steps, {} violations",
+            trace.visible - seen,
+            trace.visible,
+            trace.seen.len() - 1,
+            trace.violations
+        );
+        Ok(ExitCode::FAILURE)
+    }
+
+    /// What robots share without radio has no bytes.
+    fn check_budget(&self) -> Result<(), &'static str> {
+        match (self.medium, self.byte_budget) {
+            (MediumKind::Ideal, Some(_)) => {
+                Err("--byte-budget does not apply with --medium ideal; leave one of them out")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Nothing that a survey of voxels would have to ignore or round.
+    fn check_for_voxels(&self) -> Result<(), String> {
+        let given = [
+            ("planner", self.planner.is_some()),
+            ("step", self.step.is_some()),
+            ("min-altitude", self.min_altitude.is_some()),
+            ("ceiling", self.ceiling.is_some()),
+            ("skip", self.skip.is_some()),
+            ("kill", !self.kill.is_empty()),
+        ];
+        if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
+            return Err(format!(
+                "--{option} does not apply in a town of voxels, where one planner flies a voxel \
+                 a step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
+            ));
+        }
+        if let Some(size) = self.size.filter(|&size| size > TOWN) {
+            return Err(format!(
+                "--size {size}: expected 8 to {TOWN} in a town of voxels"
+            ));
+        }
+        match self.range.fract() == 0.0 && (2.0..=f32::from(MAX_RANGE)).contains(&self.range) {
+            true => Ok(()),
+            false => Err(format!(
+                "--range {}: expected a whole number from 2 to {MAX_RANGE} in a town of voxels",
+                self.range
+            )),
+        }
     }
 
     fn scenario(&self) -> Scenario {
-        let scenario = Scenario::new(self.planner, self.robots.into(), self.seed);
+        let planner = self.planner.unwrap_or(Planner::CoordinatedSurvey);
+        let scenario = Scenario::new(planner, self.robots.into(), self.seed);
+        let usual = scenario.limits;
         Scenario {
             limits: Limits {
                 range: self.range,
-                step: self.step,
-                min_altitude: self.min_altitude,
-                ceiling: self.ceiling,
-                ..scenario.limits
+                step: self.step.unwrap_or(usual.step),
+                min_altitude: self.min_altitude.unwrap_or(usual.min_altitude),
+                ceiling: self.ceiling.unwrap_or(usual.ceiling),
+                ..usual
             },
             medium: self.medium,
-            byte_budget: self.byte_budget,
+            byte_budget: self.byte_budget.unwrap_or(scenario.byte_budget),
             loss: self.loss,
-            skip: self.skip,
+            skip: self.skip.unwrap_or(scenario.skip),
             kills: self.kill.clone(),
             max_ticks: self.max_ticks,
             ..scenario
@@ -241,24 +310,21 @@ fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
     })
 }
 
-fn words(ticks: Option<u32>) -> String {
-    ticks.map_or("ever so many".into(), |ticks| ticks.to_string())
+fn after(ticks: Option<u32>) -> String {
+    ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"))
 }
 
-fn print(summary: &Summary, out: &std::path::Path) {
-    let ticks =
-        |ticks: Option<u32>| ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"));
+fn print(summary: &Summary, out: &Path) {
     println!(
         "{}: {} of {} columns seen",
         summary.map, summary.seen_cells, summary.reachable_cells
     );
-    println!("  95 % seen          {}", ticks(summary.ticks_to_95));
-    println!("  everything seen    {}", ticks(summary.ticks_to_seen));
-    println!("  every robot done   {}", ticks(summary.ticks_to_stopped));
-    println!(
-        "  most work          {} in one tick",
-        summary.max_work_per_tick
-    );
+    println!("  95 % seen          {}", after(summary.ticks_to_95));
+    println!("  everything seen    {}", after(summary.ticks_to_seen));
+    let stopped = after(summary.ticks_to_stopped);
+    println!("  every robot done   {stopped}");
+    let work = summary.max_work_per_tick;
+    println!("  most work          {work} in one tick");
     println!("  violations         {}", summary.violations);
     for (number, robot) in summary.robots.iter().enumerate() {
         println!(

@@ -1,12 +1,11 @@
 //! What robots and the world say to each other: one JSON value a line.
 
-use std::io::{self, BufRead, BufReader, Write};
-use std::net::{TcpStream, ToSocketAddrs};
 use std::time::Duration;
 
 use planner_core::{Cell, Direction, Sighting};
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+use super::line::Line;
 
 /// From a robot.
 #[derive(Debug, Serialize, Deserialize)]
@@ -14,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub(super) enum FromRobot {
     /// First, once: who it is.
     Hello { robot: u8 },
-    /// In each tick, after it has looked.
+    /// In each tick, after it has looked: the number of a direction, below 4.
     Go(u8),
     /// Stands still in this tick.
     Wait,
@@ -33,12 +32,16 @@ pub(super) enum FromWorld {
         robots: u8,
         at: (i16, i16),
     },
+    /// Nothing happens for a while; the world is there.
+    Waiting,
     /// A tick begins: this is seen.
     Look(Look),
     /// Whether the robot has moved.
     Went(bool),
     /// The run has ended.
     Over,
+    /// Whoever hears this takes part no longer, for this reason.
+    Refused { reason: String },
 }
 
 /// What a robot sees, and from where.
@@ -75,43 +78,8 @@ pub(super) fn go(direction: Direction) -> FromRobot {
     FromRobot::Go(direction as u8)
 }
 
-/// One end of a conversation. Nobody waits longer than the limit for the other.
-pub(super) struct Line {
-    from: BufReader<TcpStream>,
-    to: TcpStream,
-}
-
-impl Line {
-    pub(super) fn connect(to: impl ToSocketAddrs, limit: Duration) -> io::Result<Self> {
-        Self::new(TcpStream::connect(to)?, limit)
-    }
-
-    pub(super) fn new(stream: TcpStream, limit: Duration) -> io::Result<Self> {
-        stream.set_nonblocking(false)?;
-        stream.set_nodelay(true)?;
-        stream.set_read_timeout(Some(limit))?;
-        stream.set_write_timeout(Some(limit))?;
-        Ok(Self {
-            from: BufReader::new(stream.try_clone()?),
-            to: stream,
-        })
-    }
-
-    pub(super) fn say(&mut self, message: &impl Serialize) -> io::Result<()> {
-        let mut text = serde_json::to_string(message)?;
-        text.push('\n');
-        self.to.write_all(text.as_bytes())
-    }
-
-    /// The next message.
-    ///
-    /// # Errors
-    /// The other is gone, silent, or says something else.
-    pub(super) fn hear<M: DeserializeOwned>(&mut self) -> io::Result<M> {
-        let mut text = String::new();
-        if self.from.read_line(&mut text)? == 0 {
-            return Err(io::ErrorKind::UnexpectedEof.into());
-        }
-        Ok(serde_json::from_str(&text)?)
-    }
+/// Says why, if that can be heard, and hangs up.
+pub(super) fn refuse(mut line: Line, reason: &str) {
+    let reason = reason.into();
+    let _ = line.say(&FromWorld::Refused { reason }, Duration::from_millis(100));
 }

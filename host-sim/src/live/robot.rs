@@ -1,18 +1,23 @@
 //! One robot as a process.
 
 use std::io;
-use std::net::{SocketAddr, UdpSocket};
-use std::time::Duration;
+use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::time::{Duration, Instant};
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::{Action, Cell, Extent, Motion, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use super::protocol::{FromRobot, FromWorld, Line, go};
+use super::error::LiveError;
+use super::line::{Line, LineError};
+use super::protocol::{FromRobot, FromWorld, go};
+use crate::excerpt::excerpt;
 use crate::planners::{PlannerKind, Setup};
 
 /// Longest silence of the world.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// Longest time that the world may take to hear what it is told.
+const HEARING: Duration = Duration::from_secs(10);
 
 /// How a robot takes part.
 #[derive(Clone, Debug)]
@@ -55,32 +60,90 @@ pub struct RobotReport {
 /// Takes part in a run until the world ends it.
 ///
 /// # Errors
-/// The world or the socket fails, or the grid is larger than any planner's map.
-pub fn explore(options: &RobotOptions) -> io::Result<RobotReport> {
-    let socket = UdpSocket::bind(options.listen)?;
-    socket.set_nonblocking(true)?;
-    let mut line = Line::connect(options.world, PATIENCE)?;
-    line.say(&FromRobot::Hello {
+/// The world or the socket fails, the world does not take the robot, or the grid is
+/// larger than any planner's map.
+pub fn explore(options: &RobotOptions) -> Result<RobotReport, LiveError> {
+    let socket = frames(options.listen).map_err(|problem| LiveError::Frames {
+        address: options.listen,
+        problem,
+    })?;
+    let mut world = World::at(options.world)?;
+    world.say(&FromRobot::Hello {
         robot: options.robot,
     })?;
-    let welcome = line.hear()?;
-    let FromWorld::Welcome {
-        width,
-        height,
-        at: (x, y),
-        ..
-    } = welcome
-    else {
-        return Err(io::Error::other(format!("the world said {welcome:?}")));
+    let (extent, start) = loop {
+        match world.hear()? {
+            FromWorld::Welcome {
+                width,
+                height,
+                at: (x, y),
+                ..
+            } => break (Extent::new(width, height), Cell::new(x, y)),
+            FromWorld::Waiting => {}
+            other => return Err(world.nonsense(&other)),
+        }
     };
-    let place = Place {
-        extent: Extent::new(width, height),
-        start: Cell::new(x, y),
-    };
-    match width.max(height) {
-        0..=64 => Body::<8, 8>::new(options, &place, socket)?.run(line),
-        65..=256 => Body::<32, 32>::new(options, &place, socket)?.run(line),
-        _ => Body::<64, 64>::new(options, &place, socket)?.run(line),
+    let place = Place { extent, start };
+    match extent.width.max(extent.height) {
+        0..=64 => Body::<8, 8>::new(options, &place, socket)?.run(world),
+        65..=256 => Body::<32, 32>::new(options, &place, socket)?.run(world),
+        _ => Body::<64, 64>::new(options, &place, socket)?.run(world),
+    }
+}
+
+fn frames(at: SocketAddr) -> io::Result<UdpSocket> {
+    let socket = UdpSocket::bind(at)?;
+    socket.set_nonblocking(true)?;
+    Ok(socket)
+}
+
+/// The world, as a robot has it.
+struct World {
+    address: SocketAddr,
+    line: Line,
+}
+
+impl World {
+    fn at(address: SocketAddr) -> Result<Self, LiveError> {
+        let line = TcpStream::connect_timeout(&address, HEARING).and_then(Line::new);
+        let line = line.map_err(|problem| LiveError::NoWorld { address, problem })?;
+        Ok(Self { address, line })
+    }
+
+    fn say(&mut self, message: &FromRobot) -> Result<(), LiveError> {
+        let said = self.line.say(message, HEARING);
+        said.map_err(|problem| {
+            // A world that hangs up may have said why.
+            match self.line.poll() {
+                Ok(Some(FromWorld::Refused { reason })) => self.refused(&reason),
+                _ => self.wrong(problem),
+            }
+        })
+    }
+
+    fn hear(&mut self) -> Result<FromWorld, LiveError> {
+        match self.line.hear(Instant::now(), PATIENCE) {
+            Ok(FromWorld::Refused { reason }) => Err(self.refused(&reason)),
+            Ok(message) => Ok(message),
+            Err(problem) => Err(self.wrong(problem)),
+        }
+    }
+
+    fn wrong(&self, problem: LineError) -> LiveError {
+        let address = self.address;
+        LiveError::World { address, problem }
+    }
+
+    fn refused(&self, reason: &str) -> LiveError {
+        LiveError::Refused {
+            address: self.address,
+            reason: excerpt(reason),
+        }
+    }
+
+    /// A message that does not belong here.
+    fn nonsense(&self, message: &FromWorld) -> LiveError {
+        self.wrong(LineError::Nonsense(excerpt(&format!("{message:?}"))))
     }
 }
 
@@ -98,7 +161,7 @@ struct Body<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Body<TW, TH> {
-    fn new(options: &RobotOptions, place: &Place, socket: UdpSocket) -> io::Result<Self> {
+    fn new(options: &RobotOptions, place: &Place, socket: UdpSocket) -> Result<Self, LiveError> {
         let id = RobotId(options.robot);
         let planner = options
             .planner
@@ -108,7 +171,10 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
                 start: place.start,
                 link: options.link,
             })
-            .map_err(io::Error::other)?;
+            .map_err(|error| LiveError::Place {
+                address: options.world,
+                reason: error.to_string(),
+            })?;
         Ok(Self {
             planner,
             socket,
@@ -126,15 +192,21 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
         })
     }
 
-    fn run(mut self, mut line: Line) -> io::Result<RobotReport> {
+    fn run(mut self, mut world: World) -> Result<RobotReport, LiveError> {
+        // Whether the robot has said where it goes, and not heard whether it went.
+        let mut goes = false;
         loop {
-            match line.hear()? {
-                FromWorld::Look(look) => {
+            match world.hear()? {
+                FromWorld::Look(look) if !goes => {
                     self.planner.observe(&look.sighting());
                     self.speak();
                     self.listen();
+                    self.report.stop = None;
                     let act = match self.planner.tick() {
-                        Action::Move(direction) => go(direction),
+                        Action::Move(direction) => {
+                            goes = true;
+                            go(direction)
+                        }
                         Action::Wait => FromRobot::Wait,
                         Action::Stop(stop) => {
                             self.report.stop = Some(stop.to_string());
@@ -143,17 +215,19 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
                             }
                         }
                     };
-                    line.say(&act)?;
+                    world.say(&act)?;
                 }
-                FromWorld::Went(moved) => {
+                FromWorld::Went(moved) if goes => {
+                    goes = false;
                     self.report.steps += u32::from(moved);
                     self.planner.report(match moved {
                         true => Motion::Moved,
                         false => Motion::Blocked,
                     });
                 }
+                FromWorld::Waiting => {}
                 FromWorld::Over => return Ok(self.close()),
-                FromWorld::Welcome { .. } => {}
+                other => return Err(world.nonsense(&other)),
             }
         }
     }

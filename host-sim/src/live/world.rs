@@ -1,21 +1,32 @@
 //! The world as a process: it knows where the robots are, what they see, and who
 //! has not answered yet.
 
-use std::io;
-use std::net::{SocketAddr, TcpListener};
+use std::fmt;
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use planner_core::{Cell, Direction};
 use serde::{Deserialize, Serialize};
 
-use super::protocol::{FromRobot, FromWorld, Line, Look};
+use super::door::{Door, Newcomer};
+use super::error::LiveError;
+use super::line::{Line, LineError};
+use super::protocol::{FromRobot, FromWorld, Look, refuse};
 use crate::coverage::Coverage;
+use crate::excerpt::excerpt;
 use crate::sensor::Sensor;
 use crate::world::World;
 
 /// Longest time that a robot may think; then it counts as gone.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Longest time that a robot may take to hear what it is told.
+const HEARING: Duration = Duration::from_secs(2);
+/// Robots hear something at least as often, while they wait.
+const HEARTBEAT: Duration = Duration::from_secs(1);
+/// Answers of a robot after which one that has come as the same robot is sent away. The
+/// first may have been given before its process ended.
+const PROOFS: u8 = 2;
 
 /// How a world is served.
 #[derive(Clone, Debug)]
@@ -56,21 +67,71 @@ impl WorldReport {
     }
 }
 
+/// Something that happens in a served world.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A tick has ended.
+    Ticked {
+        /// How many have.
+        tick: u32,
+        /// Reachable cells that somebody has seen.
+        seen: u32,
+    },
+    /// A robot is gone, for now.
+    Left {
+        /// Its number.
+        robot: usize,
+        /// What became of it.
+        why: String,
+    },
+    /// A robot is not waited for any longer.
+    Missed {
+        /// Its number.
+        robot: usize,
+    },
+    /// Somebody was not let in as this robot.
+    Refused {
+        /// The number.
+        robot: u8,
+        /// Why.
+        why: String,
+    },
+}
+
+impl fmt::Display for Event {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ticked { tick, seen } => write!(f, "tick {tick}: {seen} cells seen"),
+            Self::Left { robot, why } => write!(
+                f,
+                "robot {robot} {why}; its place is kept for a while, start it again"
+            ),
+            Self::Missed { robot } => write!(f, "robot {robot} is not there; going on without it"),
+            Self::Refused { robot, why } => write!(f, "nobody was let in as robot {robot}: {why}"),
+        }
+    }
+}
+
 /// A world that waits for its robots.
 pub struct Server {
     options: WorldOptions,
     sensor: Sensor,
     coverage: Coverage,
-    listener: TcpListener,
+    door: Door,
     bodies: Vec<Body>,
     reachable_cells: u32,
     tick: u32,
+    /// What has happened and was not told yet.
+    events: Vec<Event>,
 }
 
 /// What the world knows of a robot.
 struct Body {
     at: Cell,
     line: Option<Line>,
+    /// Who takes over if the one that moves it is gone, and how often that one has
+    /// answered meanwhile.
+    heir: Option<(Line, u8)>,
     stop: Option<String>,
     /// Since when nobody moves it.
     gone_since: Instant,
@@ -89,63 +150,86 @@ impl Server {
     ///
     /// # Errors
     /// The address is taken.
-    pub fn open(options: WorldOptions) -> io::Result<Self> {
-        let listener = TcpListener::bind(options.listen)?;
-        listener.set_nonblocking(true)?;
+    pub fn open(options: WorldOptions) -> Result<Self, LiveError> {
+        let address = options.listen;
+        let door = Door::open(address);
+        let door = door.map_err(|problem| LiveError::Serve { address, problem })?;
         let reachable = options.world.reachable(&options.starts);
         let body = |&at| Body {
             at,
             line: None,
+            heir: None,
             stop: None,
             gone_since: Instant::now(),
         };
         Ok(Self {
             sensor: Sensor::new(options.world.clone(), options.range),
             coverage: Coverage::new(&options.world, &reachable, options.starts.len()),
-            listener,
+            door,
             bodies: options.starts.iter().map(body).collect(),
             reachable_cells: reachable.count(),
             options,
             tick: 0,
+            events: Vec::new(),
         })
     }
 
     /// Where it is served.
-    ///
-    /// # Errors
-    /// Those of the socket.
-    pub fn address(&self) -> io::Result<SocketAddr> {
-        self.listener.local_addr()
+    pub fn address(&self) -> SocketAddr {
+        self.door.address()
     }
 
     /// Serves until all robots have stopped, or those that have not are gone for
-    /// too long, or time is up. Calls `progress` after every tick, with the number
-    /// of reachable cells seen.
-    ///
-    /// # Errors
-    /// Those of the listening socket; a robot that fails is gone, no error.
-    pub fn run(mut self, mut progress: impl FnMut(u32, u32)) -> io::Result<WorldReport> {
+    /// too long, or time is up. Calls `tell` with what happens. A tick waits for an
+    /// answer of each robot that is there, at most 10 s for all together; strangers do
+    /// not hold it up.
+    pub fn run(mut self, mut tell: impl FnMut(Event)) -> WorldReport {
+        let mut beat = Instant::now();
         while !self.is_present() && !self.is_given_up() {
-            self.let_in()?;
+            self.let_in();
+            self.events.drain(..).for_each(&mut tell);
+            if beat.elapsed() > HEARTBEAT {
+                self.say_to_all(&FromWorld::Waiting);
+                beat = Instant::now();
+            }
             std::thread::sleep(Duration::from_millis(5));
+        }
+        let missed = self.bodies.iter().enumerate();
+        for (robot, _) in missed.filter(|(_, body)| body.line.is_none()) {
+            tell(Event::Missed { robot });
         }
         while self.tick < self.options.max_ticks && !self.is_over() {
             let began = Instant::now();
-            self.let_in()?;
+            self.let_in();
+            // Ticks are for those that are there; nobody's would be over in no time.
+            if self.bodies.iter().all(|body| body.line.is_none()) {
+                self.events.drain(..).for_each(&mut tell);
+                std::thread::sleep(Duration::from_millis(5));
+                continue;
+            }
             self.step();
             self.tick += 1;
-            progress(self.tick, self.coverage.seen_cells());
-            std::thread::sleep(self.options.pace.saturating_sub(began.elapsed()));
+            self.events.drain(..).for_each(&mut tell);
+            tell(Event::Ticked {
+                tick: self.tick,
+                seen: self.coverage.seen_cells(),
+            });
+            self.rest(self.options.pace.saturating_sub(began.elapsed()));
         }
-        for line in self.bodies.iter_mut().filter_map(|body| body.line.as_mut()) {
-            let _ = line.say(&FromWorld::Over);
+        self.close()
+    }
+
+    fn close(mut self) -> WorldReport {
+        self.say_to_all(&FromWorld::Over);
+        for (line, _) in self.bodies.iter_mut().filter_map(|body| body.heir.take()) {
+            refuse(line, "the run is over");
         }
-        Ok(WorldReport {
+        WorldReport {
             ticks: self.tick,
             reachable_cells: self.reachable_cells,
             seen_cells: self.coverage.seen_cells(),
             stops: self.bodies.into_iter().map(|body| body.stop).collect(),
-        })
+        }
     }
 
     fn is_present(&self) -> bool {
@@ -166,74 +250,146 @@ impl Server {
         })
     }
 
-    /// Lets in whoever is at the door. Who comes again takes over its body.
-    fn let_in(&mut self) -> io::Result<()> {
-        loop {
-            let stream = match self.listener.accept() {
-                Ok((stream, _)) => stream,
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return Ok(()),
-                Err(error) => return Err(error),
+    fn say_to_all(&mut self, message: &FromWorld) {
+        for body in &mut self.bodies {
+            let lines = body.line.iter_mut();
+            // Who does not hear it does not answer either, in the next tick.
+            for line in lines.chain(body.heir.as_mut().map(|(line, _)| line)) {
+                let _ = line.say(message, HEARING);
+            }
+        }
+    }
+
+    fn rest(&mut self, mut left: Duration) {
+        while left > HEARTBEAT {
+            std::thread::sleep(HEARTBEAT);
+            left -= HEARTBEAT;
+            self.say_to_all(&FromWorld::Waiting);
+        }
+        std::thread::sleep(left);
+    }
+
+    /// Lets in who has come. Who comes as a robot whose process is gone takes over its
+    /// body; while it is there, it keeps it.
+    fn let_in(&mut self) {
+        let newcomers: Vec<Newcomer> = self.door.newcomers().collect();
+        for Newcomer { robot, line } in newcomers {
+            let last = self.bodies.len() - 1;
+            let why = match self.bodies.get_mut(usize::from(robot)) {
+                None => {
+                    format!("there is no robot {robot} here; robots are numbered 0 to {last}")
+                }
+                Some(body) if body.heir.is_some() => is_taken(robot),
+                Some(body) => {
+                    body.heir = Some((line, 0));
+                    continue;
+                }
             };
-            let Ok(mut line) = Line::new(stream, PATIENCE) else {
-                continue;
+            refuse(line, &why);
+            self.events.push(Event::Refused { robot, why });
+        }
+        for index in 0..self.bodies.len() {
+            self.inherit(index);
+        }
+    }
+
+    fn inherit(&mut self, index: usize) {
+        let extent = self.options.world.extent();
+        let robots = self.bodies.len() as u8;
+        let body = &mut self.bodies[index];
+        if body.line.as_ref().is_some_and(Line::is_closed) {
+            body.leave();
+            let why = LineError::Gone.to_string();
+            self.events.push(Event::Left { robot: index, why });
+        }
+        let is_taken_now = body.line.is_some();
+        let Some((mut line, proofs)) = body.heir.take() else {
+            return;
+        };
+        if is_taken_now && proofs < PROOFS {
+            body.heir = Some((line, proofs));
+        } else if is_taken_now {
+            let (robot, why) = (index as u8, is_taken(index as u8));
+            refuse(line, &why);
+            self.events.push(Event::Refused { robot, why });
+        } else {
+            let welcome = FromWorld::Welcome {
+                width: extent.width,
+                height: extent.height,
+                robots,
+                at: (body.at.x, body.at.y),
             };
-            if let Ok(FromRobot::Hello { robot }) = line.hear()
-                && let Some(at) = self.bodies.get(usize::from(robot)).map(|body| body.at)
-                && line.say(&self.welcome(at)).is_ok()
-            {
-                let body = &mut self.bodies[usize::from(robot)];
+            if line.say(&welcome, HEARING).is_ok() {
                 body.line = Some(line);
                 body.stop = None;
             }
         }
     }
 
-    fn welcome(&self, at: Cell) -> FromWorld {
-        let extent = self.options.world.extent();
-        FromWorld::Welcome {
-            width: extent.width,
-            height: extent.height,
-            robots: self.bodies.len() as u8,
-            at: (at.x, at.y),
-        }
-    }
-
     /// All look, all answer, then one after another moves.
     fn step(&mut self) {
-        for (index, body) in self.bodies.iter_mut().enumerate() {
+        for index in 0..self.bodies.len() {
+            let body = &mut self.bodies[index];
             if let Some(line) = &mut body.line {
                 let view = self.sensor.view(body.at, Direction::East);
                 self.coverage.look(index, view);
-                if line
-                    .say(&FromWorld::Look(Look::of(&view.sighting)))
-                    .is_err()
-                {
-                    body.leave();
+                let look = FromWorld::Look(Look::of(&view.sighting));
+                if let Err(error) = line.say(&look, HEARING) {
+                    self.leave(index, &error);
                 }
             }
         }
-        for body in &mut self.bodies {
-            let Some(line) = &mut body.line else { continue };
-            let done = match line.hear() {
-                Ok(FromRobot::Go(direction)) => {
-                    let to = body.at.step(Direction::from_index(direction));
-                    let is_free = self.options.world.is_free(to);
-                    if is_free {
-                        body.at = to;
-                    }
-                    line.say(&FromWorld::Went(is_free))
-                }
-                Ok(FromRobot::Wait) => Ok(()),
-                Ok(FromRobot::Stop { reason }) => {
-                    body.stop = Some(reason);
-                    Ok(())
-                }
-                Ok(FromRobot::Hello { .. }) => Err(io::ErrorKind::InvalidData.into()),
-                Err(error) => Err(error),
-            };
-            if done.is_err() {
-                body.leave();
+        let since = Instant::now();
+        for index in 0..self.bodies.len() {
+            if let Err(error) = self.answer(index, since) {
+                self.leave(index, &error);
             }
         }
     }
+
+    /// What a robot does in this tick.
+    fn answer(&mut self, index: usize, since: Instant) -> Result<(), LineError> {
+        let body = &mut self.bodies[index];
+        let Some(line) = &mut body.line else {
+            return Ok(());
+        };
+        let answer = line.hear(since, PATIENCE)?;
+        body.stop = None;
+        match answer {
+            FromRobot::Go(direction) if direction < 4 => {
+                let to = body.at.step(Direction::from_index(direction));
+                let is_free = self.options.world.is_free(to);
+                if is_free {
+                    body.at = to;
+                }
+                line.say(&FromWorld::Went(is_free), HEARING)?;
+            }
+            FromRobot::Wait => {}
+            FromRobot::Stop { reason } => body.stop = Some(excerpt(&reason)),
+            FromRobot::Go(_) | FromRobot::Hello { .. } => {
+                return Err(LineError::Nonsense(excerpt(&format!("{answer:?}"))));
+            }
+        }
+        if let Some((_, proofs)) = &mut body.heir {
+            *proofs = proofs.saturating_add(1);
+        }
+        Ok(())
+    }
+
+    fn leave(&mut self, index: usize, error: &LineError) {
+        let why = error.to_string();
+        let body = &mut self.bodies[index];
+        if let Some(line) = body.line.take() {
+            refuse(line, &format!("it {why}"));
+        }
+        body.leave();
+        self.events.push(Event::Left { robot: index, why });
+    }
+}
+
+fn is_taken(robot: u8) -> String {
+    format!(
+        "robot {robot} is there already; give another --id, or end the process that is robot \
+         {robot}"
+    )
 }

@@ -6,7 +6,7 @@
 //! `11` inner (lower bit first). Child i lies on the upper side in x, y and z if bit
 //! 0, 1 and 2 of i is set. A leaf above the lowest level stands for all of its cube.
 
-use std::io::{self, BufRead, Write};
+use std::io::{self, BufRead, Read, Write};
 
 /// Levels below the root.
 const DEPTH: u32 = 16;
@@ -14,7 +14,14 @@ const DEPTH: u32 = 16;
 /// The voxel that the tree is centred on has this number on every axis.
 const CENTRE: i32 = 1 << (DEPTH - 1);
 
-const MAGIC: &str = "# Octomap OcTree binary file";
+/// First line of a `.bt` file.
+pub(super) const MAGIC: &str = "# Octomap OcTree binary file";
+
+/// Most bytes of a header that is read.
+const LONGEST_HEADER: u64 = 4096;
+
+/// Most nodes of a tree that is read: half a gigabyte at worst.
+const MOST_NODES: usize = 1 << 22;
 
 /// Column, row and level of a voxel; voxel (0, 0, 0) has its lower corner at the
 /// origin. From -32768 to 32767.
@@ -139,56 +146,79 @@ impl OcTree {
             .map_or(Ok(()), |root| emit(root, &mut to))
     }
 
-    /// Reads a `.bt` file.
+    /// Reads a `.bt` file of at most 4,194,304 nodes.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or that it cannot be read.
     pub fn read(mut from: impl BufRead) -> io::Result<Self> {
+        let mut header = from.by_ref().take(LONGEST_HEADER);
         let mut line = String::new();
-        from.read_line(&mut line)?;
+        header.read_line(&mut line)?;
         if !line.starts_with(MAGIC) {
             return Err(invalid("not an OctoMap binary tree"));
         }
         let (mut size, mut resolution) = (None, None);
         loop {
             line.clear();
-            if from.read_line(&mut line)? == 0 {
+            if header.read_line(&mut line)? == 0 {
                 return Err(invalid("the header has no data line"));
             }
             match line.trim().split_once(' ') {
                 Some(("size", value)) => size = value.parse::<usize>().ok(),
                 Some(("res", value)) => resolution = value.parse::<f64>().ok(),
                 Some(("id", id)) if id != "OcTree" => {
-                    return Err(invalid("not an occupancy tree"));
+                    return Err(invalid("not an occupancy tree, which has `id OcTree`"));
                 }
                 None if line.trim() == "data" => break,
                 _ => {}
             }
         }
-        let size = size.ok_or_else(|| invalid("the header has no size"))?;
+        let size = size.ok_or_else(|| invalid("the header has no size, a number of nodes"))?;
+        if size > MOST_NODES {
+            let reason = format!("{size} nodes by its header; at most {MOST_NODES} are read");
+            return Err(invalid(reason));
+        }
         let resolution = resolution
             .filter(|side| *side > 0.0 && side.is_finite())
-            .ok_or_else(|| invalid("the header has no resolution"))?;
+            .ok_or_else(|| invalid("the header has no resolution above 0"))?;
+        let mut left = size;
         let root = if size == 0 {
             None
         } else {
-            Some(parse(&mut from, DEPTH)?)
+            Some(parse(&mut from, DEPTH, &mut left)?)
         };
-        let tree = Self { resolution, root };
-        if tree.nodes() != size {
-            return Err(invalid("the number of nodes is not the header's"));
+        if left != 0 {
+            return Err(invalid("fewer nodes than its header says"));
         }
-        Ok(tree)
+        Ok(Self { resolution, root })
     }
 }
 
-fn invalid(reason: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidData, reason)
+fn invalid(reason: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason.into())
 }
 
-fn parse(from: &mut impl BufRead, depth: u32) -> io::Result<Node> {
+/// Counts one of the nodes that are left.
+fn count(left: &mut usize) -> io::Result<()> {
+    *left = left
+        .checked_sub(1)
+        .ok_or_else(|| invalid("more nodes than its header says"))?;
+    Ok(())
+}
+
+/// An inner node `depth` levels above voxels, with all below it. `left` nodes are left
+/// by the header.
+fn parse(from: &mut impl BufRead, depth: u32, left: &mut usize) -> io::Result<Node> {
     if depth == 0 {
         return Err(invalid("a voxel with children"));
     }
+    count(left)?;
     let mut bytes = [0; 2];
-    from.read_exact(&mut bytes)?;
+    from.read_exact(&mut bytes)
+        .map_err(|error| match error.kind() {
+            io::ErrorKind::UnexpectedEof => invalid("ends in the middle; it was cut off"),
+            _ => error,
+        })?;
     let bits = u16::from_le_bytes(bytes);
     let mut children: Box<[Option<Node>; 8]> = Box::default();
     for (i, child) in children.iter_mut().enumerate() {
@@ -201,8 +231,9 @@ fn parse(from: &mut impl BufRead, depth: u32) -> io::Result<Node> {
         };
     }
     for child in children.iter_mut().flatten() {
-        if matches!(child, Node::Inner(_)) {
-            *child = parse(from, depth - 1)?;
+        match child {
+            Node::Inner(_) => *child = parse(from, depth - 1, left)?,
+            Node::Leaf { .. } => count(left)?,
         }
     }
     Ok(Node::Inner(children))
@@ -292,6 +323,32 @@ mod tests {
             bytes[at] ^= flip;
             let _ = OcTree::read(&bytes[..]);
         }
+    }
+
+    #[test]
+    fn a_header_is_believed_only_so_far() {
+        let error = |bytes: &[u8]| OcTree::read(bytes).unwrap_err().to_string();
+        let file = |header: &str, data: &[u8]| {
+            let header = format!("{MAGIC}\n{header}\nres 0.1\ndata\n");
+            [header.as_bytes(), data].concat()
+        };
+        let deep = [0x03, 0x00].repeat(40);
+        for (bytes, reason) in [
+            (file("size 99999999999", &[]), "at most 4194304"),
+            (file("size 4000000", &[0xff; 20]), "middle"),
+            (file("size 4000000", &deep), "children"),
+            (file("size 3", &deep), "more nodes"),
+            (file("size 3", &[0x01, 0x00]), "fewer nodes"),
+            (file("size -1", &[]), "no size"),
+            (file("id ColorOcTree\nsize 1", &[0, 0]), "id OcTree"),
+            (file(&"# \n".repeat(3000), &[]), "no data line"),
+        ] {
+            let error = error(&bytes);
+            assert!(error.contains(reason), "{reason:?} is not in {error}");
+        }
+        // A line without an end is not waited for.
+        let endless = io::Read::chain(MAGIC.as_bytes(), io::repeat(b'x'));
+        assert!(OcTree::read(io::BufReader::new(endless)).is_err());
     }
 
     /// One occupied voxel at the origin: sixteen inner nodes, each with one child.

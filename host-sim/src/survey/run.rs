@@ -15,6 +15,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::baselines::{Follower, Guide, Rounds, assign};
+use super::error::SurveyError;
 use super::scenario::{Planner, Scenario};
 use super::sensor::look;
 use super::terrain::Terrain;
@@ -63,23 +64,32 @@ impl Host for Here {
 }
 
 /// Runs `scenario` over `terrain`.
-pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SetupError> {
+///
+/// # Errors
+/// A setting is out of its range, or the robots do not fit over the terrain.
+pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SurveyError> {
     run_on(&Here, terrain, scenario)
 }
 
 /// As [`run`], with the planners of planner-core elsewhere.
+///
+/// # Errors
+/// As [`run`].
 pub fn run_on(
     host: &impl Host,
     terrain: &Terrain,
     scenario: &Scenario,
-) -> Result<Trace, SetupError> {
+) -> Result<Trace, SurveyError> {
     let mut run = open_on(host, Arc::new(terrain.clone()), scenario)?;
     while !host.has_failed() && run.step() {}
     Ok(run.finish())
 }
 
 /// A run before its first step, for whoever wants to watch.
-pub fn open(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Box<dyn Stepping>, SetupError> {
+///
+/// # Errors
+/// As [`run`].
+pub fn open(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Box<dyn Stepping>, SurveyError> {
     open_on(&Here, terrain, scenario)
 }
 
@@ -87,7 +97,8 @@ fn open_on(
     host: &impl Host,
     terrain: Arc<Terrain>,
     scenario: &Scenario,
-) -> Result<Box<dyn Stepping>, SetupError> {
+) -> Result<Box<dyn Stepping>, SurveyError> {
+    scenario.check()?;
     let Extent { width, height } = terrain.extent();
     Ok(match width.max(height).div_ceil(8) {
         0..=4 => Box::new(Simulation::<4>::new(host, terrain, scenario)?),
@@ -168,9 +179,9 @@ impl<const T: usize> Simulation<T> {
         host: &impl Host,
         terrain: Arc<Terrain>,
         scenario: &Scenario,
-    ) -> Result<Self, SetupError> {
+    ) -> Result<Self, SurveyError> {
         let extent = terrain.extent();
-        let starts = start_positions(&terrain, scenario);
+        let starts = scenario.starts(&terrain)?;
         let robots = starts
             .iter()
             .copied()
@@ -192,7 +203,7 @@ impl<const T: usize> Simulation<T> {
             terrain,
             scenario: scenario.clone(),
             robots,
-            union: Box::new(Surface::new(extent)?),
+            union: Box::new(Surface::new(extent).map_err(SetupError::from)?),
             faults: ChaCha8Rng::seed_from_u64(scenario.seed),
             now: 0,
         })
@@ -436,22 +447,6 @@ impl Safety {
             }
         }
     }
-}
-
-/// In the north-west corner, two cells apart, row by row of a square.
-fn start_positions(terrain: &Terrain, scenario: &Scenario) -> Vec<Point> {
-    let per_row = (scenario.robots as f64).sqrt().ceil() as usize;
-    let altitude = scenario.limits.min_altitude + 1.0;
-    (0..scenario.robots)
-        .map(|i| {
-            let place =
-                planner_core::Cell::new(2 + 2 * (i % per_row) as i16, 2 + 2 * (i / per_row) as i16);
-            Point::over(
-                place,
-                terrain.height(place).unwrap_or_default().cells() + altitude,
-            )
-        })
-        .collect()
 }
 
 fn pilot<const T: usize>(

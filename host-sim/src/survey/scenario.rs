@@ -1,8 +1,19 @@
 //! What a run is a pure function of.
 
-use planner_core::survey::Limits;
+use planner_core::survey::{Limits, MAX_RANGE};
+use planner_core::{Cell, Extent, Point};
 
+use super::error::{SurveyError, check_robots, check_share};
+use super::terrain::Terrain;
 use crate::medium::MediumKind;
+
+/// Shortest and longest step in cells: with a shorter one a robot gives up on its way
+/// across the largest terrain.
+const STEPS: std::ops::RangeInclusive<f32> = 0.1..=100.0;
+/// Highest ceiling in cells: what frames can tell.
+const HIGHEST: f32 = 500.0;
+/// Columns between two starts, and of the first from the edge.
+const APART: usize = 2;
 
 /// Ten frames of 55 bytes in a step: with 30 % of them lost, eight robots take hardly longer.
 pub const DEFAULT_BYTE_BUDGET: u16 = 550;
@@ -64,7 +75,7 @@ impl std::str::FromStr for Kill {
 pub struct Scenario {
     /// How the robots decide.
     pub planner: Planner,
-    /// Number of robots, at most 255.
+    /// Number of robots, 1 to 255.
     pub robots: usize,
     /// The fleet's physics.
     pub limits: Limits,
@@ -107,5 +118,199 @@ impl Scenario {
             kills: Vec::new(),
             max_ticks: 20_000,
         }
+    }
+
+    /// Whether the scenario can be flown over some terrain.
+    ///
+    /// # Errors
+    /// The first setting that is out of its range, and the range.
+    pub fn check(&self) -> Result<(), SurveyError> {
+        let Limits {
+            range,
+            step,
+            min_altitude,
+            ceiling,
+            separation,
+        } = self.limits;
+        check_robots(self.robots)?;
+        check_share("loss", self.loss)?;
+        check_share("skip", self.skip)?;
+        let within = |option, found: f32, is_good: bool, expected: String| match is_good {
+            true => Ok(()),
+            false => Err(SurveyError::setting(option, found, expected)),
+        };
+        within(
+            "range",
+            range,
+            range > 0.0 && range <= MAX_RANGE,
+            format!("above 0 and at most {MAX_RANGE} cells"),
+        )?;
+        within(
+            "step",
+            step,
+            STEPS.contains(&step),
+            format!("{} to {} cells", STEPS.start(), STEPS.end()),
+        )?;
+        within(
+            "min-altitude",
+            min_altitude,
+            (0.0..range).contains(&min_altitude),
+            format!("0 or more, and less than the range of {range} cells, or no ground is seen"),
+        )?;
+        within(
+            "ceiling",
+            ceiling,
+            ceiling > min_altitude && ceiling <= HIGHEST,
+            format!("above the least altitude of {min_altitude} and at most {HIGHEST} cells"),
+        )?;
+        within(
+            "separation",
+            separation,
+            (0.0..=APART as f32).contains(&separation),
+            format!("0 to {APART} cells, as starts are {APART} apart"),
+        )?;
+        match self.kills.iter().find(|kill| kill.robot >= self.robots) {
+            Some(kill) => Err(SurveyError::NoSuchRobot {
+                robot: kill.robot,
+                last: self.robots - 1,
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// Where the robots start: in the north-west corner, two cells apart, row by row of
+    /// a square, one cell above the least altitude.
+    ///
+    /// # Errors
+    /// They do not fit into the terrain, or under the ceiling; and what would.
+    pub fn starts(&self, terrain: &Terrain) -> Result<Vec<Point>, SurveyError> {
+        let extent = terrain.extent();
+        if !fit(self.robots, extent) {
+            return Err(SurveyError::NoRoom {
+                robots: self.robots,
+                extent,
+                most: (1..self.robots)
+                    .rfind(|&most| fit(most, extent))
+                    .unwrap_or(0),
+            });
+        }
+        let altitude = self.limits.min_altitude + 1.0;
+        let starts: Vec<_> = places(self.robots)
+            .map(|place| {
+                let ground = terrain.height(place).unwrap_or_default();
+                Point::over(place, ground.cells() + altitude)
+            })
+            .collect();
+        let ceiling = self.limits.ceiling;
+        match starts.iter().position(|start| start.z > ceiling) {
+            Some(robot) => Err(SurveyError::StartTooHigh {
+                robot,
+                height: starts[robot].z,
+                ceiling,
+                needed: starts.iter().fold(0.0, |most, start| start.z.max(most)),
+            }),
+            None => Ok(starts),
+        }
+    }
+}
+
+/// The columns over which so many robots start.
+fn places(robots: usize) -> impl Iterator<Item = Cell> {
+    let per_row = (robots as f64).sqrt().ceil() as usize;
+    let place = |index| (APART + APART * index) as i16;
+    (0..robots).map(move |i| Cell::new(place(i % per_row), place(i / per_row)))
+}
+
+fn fit(robots: usize, extent: Extent) -> bool {
+    places(robots).all(|place| extent.contains(place))
+}
+
+#[cfg(test)]
+mod tests {
+    use planner_core::surface::Height;
+
+    use super::*;
+
+    fn scenario(robots: usize) -> Scenario {
+        Scenario::new(Planner::CoordinatedSurvey, robots, 0)
+    }
+
+    fn flat(width: u16, height: u16, ground: u8) -> Terrain {
+        Terrain::from_fn(Extent::new(width, height), |_| Height(ground))
+    }
+
+    #[test]
+    fn starts_lie_inside_and_under_the_ceiling_or_there_are_none() {
+        for side in 1..24 {
+            for robots in [1, 2, 3, 4, 5, 16, 64, 255] {
+                for ground in [0, 120, 148, 152, 255] {
+                    let terrain = flat(side, side.min(9), ground);
+                    let scenario = scenario(robots);
+                    let Ok(starts) = scenario.starts(&terrain) else {
+                        continue;
+                    };
+                    assert_eq!(starts.len(), robots);
+                    for start in starts {
+                        assert!(terrain.extent().contains(start.cell()));
+                        assert!(start.z <= scenario.limits.ceiling);
+                        let altitude = start.z - f32::from(ground) / 4.0;
+                        assert!(altitude >= scenario.limits.min_altitude);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_would_fit_is_said_and_fits() {
+        let terrain = flat(8, 8, 0);
+        let Err(SurveyError::NoRoom { most, .. }) = scenario(16).starts(&terrain) else {
+            panic!("16 robots start in 8×8 columns");
+        };
+        assert_eq!(most, 9);
+        assert!(scenario(9).starts(&terrain).is_ok() && scenario(10).starts(&terrain).is_err());
+        assert!(scenario(1).starts(&flat(2, 2, 0)).is_err());
+
+        let high = flat(8, 8, 255);
+        let mut scenario = scenario(4);
+        let Err(SurveyError::StartTooHigh { needed, .. }) = scenario.starts(&high) else {
+            panic!("robots start above the ceiling");
+        };
+        scenario.limits.ceiling = needed;
+        assert!(scenario.starts(&high).is_ok());
+        scenario.limits.ceiling = needed - 0.25;
+        assert!(scenario.starts(&high).is_err());
+    }
+
+    #[test]
+    fn every_setting_has_a_range_that_its_error_names() {
+        let bad = |change: &dyn Fn(&mut Scenario), words: &[&str]| {
+            let mut scenario = scenario(2);
+            change(&mut scenario);
+            let error = scenario.check().unwrap_err().to_string();
+            for word in words {
+                assert!(error.contains(word), "{word:?} is not in {error}");
+            }
+        };
+        assert_eq!(scenario(2).check(), Ok(()));
+        for number in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 1e9] {
+            bad(&|it| it.limits.range = number, &["--range", "at most 12"]);
+            bad(&|it| it.limits.step = number, &["--step", "0.1 to 100"]);
+            bad(&|it| it.limits.min_altitude = number, &["--min-altitude"]);
+            bad(
+                &|it| it.limits.ceiling = number,
+                &["--ceiling", "at most 500"],
+            );
+            bad(&|it| it.limits.separation = number, &["--separation"]);
+            bad(&|it| it.loss = number.into(), &["--loss", "0 to 1"]);
+            bad(&|it| it.skip = number.into(), &["--skip", "0 to 1"]);
+        }
+        bad(&|it| it.limits.range = 0.0, &["--range", "above 0"]);
+        bad(&|it| it.limits.step = 0.0, &["--step"]);
+        bad(&|it| it.limits.min_altitude = 8.0, &["range of 8"]);
+        bad(&|it| it.robots = 0, &["--robots 0", "1 to 255"]);
+        bad(&|it| it.robots = 256, &["--robots 256"]);
+        let kill = Kill { robot: 2, step: 3 };
+        bad(&|it| it.kills = vec![kill], &["no robot 2", "0 to 1"]);
     }
 }

@@ -1,14 +1,8 @@
 //! Terrains by name: `gaussian:SEED`, `urban:SEED`, `town:SEED`, or a file.
 
-use std::fs::File;
-use std::io::BufReader;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use planner_core::Extent;
-use planner_core::surface::Height;
-
-use super::octree::OcTree;
 use super::terrain::Terrain;
 use super::voxels::Scene;
 
@@ -22,7 +16,8 @@ pub enum TerrainSource {
     /// A town of voxels drawn by a seed: see [`TerrainSource::scene`].
     Town(u64),
     /// An image whose grey values are heights in quarters of a cell, or an OctoMap
-    /// `.bt` file, of which the highest occupied voxel of each column counts.
+    /// `.bt` file, of which the highest occupied voxel of each column counts: see
+    /// [`Terrain::read`].
     File(PathBuf),
 }
 
@@ -60,68 +55,8 @@ impl TerrainSource {
             Self::Town(_) => Err("a town has several voxels in a column".into()),
             Self::Urban(seed) => Ok(Terrain::urban(*seed, side)),
             Self::File(path) => {
-                let read = if path.extension().is_some_and(|extension| extension == "bt") {
-                    from_octree(path)
-                } else {
-                    from_image(path)
-                };
-                let name = path.file_stem().unwrap_or_default().to_string_lossy();
-                read.map(|terrain| terrain.named(name))
-                    .map_err(|reason| format!("{}: {reason}", path.display()))
+                Terrain::read(path).map_err(|error| format!("{}: {error}", path.display()))
             }
         }
     }
-}
-
-/// Columns along the longest side of a map.
-pub(super) const LARGEST: u32 = 512;
-
-fn from_image(path: &PathBuf) -> Result<Terrain, String> {
-    let image = image::open(path)
-        .map_err(|error| error.to_string())?
-        .into_luma8();
-    let extent = fitting(image.width(), image.height())?;
-    Ok(Terrain::from_fn(extent, |cell| {
-        Height(image.get_pixel(cell.x as u32, cell.y as u32).0[0])
-    }))
-}
-
-fn from_octree(path: &PathBuf) -> Result<Terrain, String> {
-    let file = File::open(path).map_err(|error| error.to_string())?;
-    let tree = OcTree::read(BufReader::new(file)).map_err(|error| error.to_string())?;
-    let cubes: Vec<_> = tree
-        .cubes()
-        .into_iter()
-        .filter(|cube| cube.occupied)
-        .collect();
-    let low = |axis: usize| cubes.iter().map(|cube| cube.corner[axis]).min();
-    let high = |axis: usize| cubes.iter().map(|cube| cube.corner[axis] + cube.side).max();
-    let (Some(west), Some(east), Some(north), Some(south), Some(floor)) =
-        (low(0), high(0), low(1), high(1), low(2))
-    else {
-        return Err("no voxel is occupied".into());
-    };
-    let extent = fitting(west.abs_diff(east), north.abs_diff(south))?;
-    let mut heights = vec![Height(0); extent.cells() as usize];
-    for cube in cubes {
-        let top = Height::from_cells((cube.corner[2] + cube.side - floor) as f32);
-        for y in cube.corner[1]..cube.corner[1] + cube.side {
-            for x in cube.corner[0]..cube.corner[0] + cube.side {
-                let index = (y - north) as usize * usize::from(extent.width) + (x - west) as usize;
-                heights[index] = heights[index].max(top);
-            }
-        }
-    }
-    Ok(Terrain::from_fn(extent, |cell| {
-        heights[cell.y as usize * usize::from(extent.width) + cell.x as usize]
-    }))
-}
-
-fn fitting(width: u32, height: u32) -> Result<Extent, String> {
-    if width == 0 || height == 0 || width > LARGEST || height > LARGEST {
-        return Err(format!(
-            "{width}×{height} columns; 1 to {LARGEST} on a side are possible"
-        ));
-    }
-    Ok(Extent::new(width as u16, height as u16))
 }

@@ -12,7 +12,7 @@
 
 mod read;
 
-use std::io;
+use std::{fmt, io};
 
 use planner_core::surface::Column;
 use planner_core::{Cell, Extent, Point, Stop};
@@ -88,6 +88,30 @@ impl Record {
 
     fn goal(&self) -> Cell {
         self.target.unwrap_or(Cell::new(-1, -1))
+    }
+}
+
+impl fmt::Display for Record {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { at, sent, .. } = self;
+        let goal = self.goal();
+        write!(
+            f,
+            "{},{},{},{},{},{},{},{},{},{},{},{},{}",
+            self.tick,
+            self.robot,
+            at.x,
+            at.y,
+            at.z,
+            self.action(),
+            goal.x,
+            goal.y,
+            self.gain,
+            self.known,
+            self.work,
+            sent.frames,
+            sent.bytes
+        )
     }
 }
 
@@ -250,25 +274,7 @@ impl Trace {
         });
         writeln!(to, "{header}\n{}", COLUMNS.join(","))?;
         for record in &self.records {
-            let Record { at, sent, .. } = record;
-            let goal = record.goal();
-            writeln!(
-                to,
-                "{},{},{},{},{},{},{},{},{},{},{},{},{}",
-                record.tick,
-                record.robot,
-                at.x,
-                at.y,
-                at.z,
-                record.action(),
-                goal.x,
-                goal.y,
-                record.gain,
-                record.known,
-                record.work,
-                sent.frames,
-                sent.bytes
-            )?;
+            writeln!(to, "{record}")?;
         }
         Ok(())
     }

@@ -4,13 +4,15 @@ use std::fmt::Display;
 
 use planner_core::{Cell, Stop};
 
-use super::{Record, STOPPED, TraceError, YIELDED};
+use super::{LOOKED, Record, STOPPED, TraceError};
 use crate::run::Scenario;
 
 /// The line of the first record.
 const FIRST_LINE: usize = 3;
 /// Most ticks without a record, all together: every robot is dead or still to come.
 const MOST_EMPTY_TICKS: u32 = 1_000_000;
+/// The last action of a robot that has not stopped: a look to the north.
+const LAST_ACT: u8 = LOOKED + 3;
 /// The newest reason to stop.
 const LAST_STOP: u8 = Stop::Held {
     frontiers: 0,
@@ -84,11 +86,11 @@ impl Checked<'_> {
             return wrong(expected, record.at);
         }
         let last = STOPPED + LAST_STOP;
-        if !(0..=YIELDED)
+        if !(0..=LAST_ACT)
             .chain(STOPPED..=last)
             .any(|action| action == record.action)
         {
-            let expected = format!("an action, 0 to {YIELDED} or {STOPPED} to {last}");
+            let expected = format!("an action, 0 to {LAST_ACT} or {STOPPED} to {last}");
             return wrong(expected, record.action);
         }
         if !extent.contains(record.after()) {

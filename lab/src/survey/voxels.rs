@@ -48,7 +48,8 @@ enum Look {
 
 impl Voxels {
     pub(super) fn new(scene: &Scene, setup: &SurveySetup) -> Result<Self, String> {
-        let run = Simulation::new(scene, &setup.voxel_scenario())?;
+        let run = Simulation::new(scene, &setup.voxel_scenario());
+        let run = run.map_err(|error| error.to_string())?;
         Ok(Self::with(Source::Running(Box::new(run))))
     }
 

@@ -2,15 +2,13 @@
 
 use std::fmt::Write as _;
 
-use planner_core::survey::SetupError;
-
 use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
 use crate::experiments::Interval;
 use crate::medium::MediumKind;
-use crate::survey::Planner;
+use crate::survey::{Planner, SurveyError};
 
-pub(super) fn by_robots(terrains: u64) -> Result<Figure, SetupError> {
+pub(super) fn by_robots(terrains: u64) -> Result<Figure, SurveyError> {
     let fleets = [1, 2, 4, 8, 16];
     let mut rows = Vec::new();
     for planner in METHODS {

@@ -7,10 +7,9 @@ mod over_time;
 mod town;
 mod work;
 
-use planner_core::survey::SetupError;
 use rayon::prelude::*;
 
-use super::{Planner, Scenario, Terrain, Trace, run};
+use super::{Planner, Scenario, SurveyError, Terrain, Trace, run};
 use crate::draw::chart::{Chart, Point, Series, Style};
 use crate::experiments::{Interval, mean};
 use crate::medium::MediumKind;
@@ -53,8 +52,8 @@ pub struct Figure {
 ///
 /// # Errors
 /// None with the set-up used here.
-pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, SetupError> {
-    let fleets = || -> Result<Vec<Fleet>, SetupError> {
+pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, SurveyError> {
+    let fleets = || -> Result<Vec<Fleet>, SurveyError> {
         METHODS
             .iter()
             .map(|&planner| Fleet::new(Setup::new(planner, ROBOTS), terrains))
@@ -136,8 +135,8 @@ struct Fleet {
 }
 
 impl Fleet {
-    fn new(setup: Setup, terrains: u64) -> Result<Self, SetupError> {
-        let one = |seed| -> Result<Run, SetupError> {
+    fn new(setup: Setup, terrains: u64) -> Result<Self, SurveyError> {
+        let one = |seed| -> Result<Run, SurveyError> {
             let scenario = Scenario {
                 medium: setup.medium,
                 loss: setup.loss,

@@ -2,14 +2,12 @@
 
 use std::fmt::Write as _;
 
-use planner_core::survey::SetupError;
-
 use super::{Figure, METHODS, colour};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Series, Style};
-use crate::survey::{Planner, Scenario, Terrain, octree, run, voxels};
+use crate::survey::{Planner, Scenario, SurveyError, Terrain, octree, run, voxels};
 
 /// Nodes of the octree of what is mapped, every tenth step.
-pub(super) fn town() -> Result<Figure, SetupError> {
+pub(super) fn town() -> Result<Figure, SurveyError> {
     const TOWN: u16 = 80;
     const VOXELS: u16 = 40;
     let mut csv = String::from("planner,tick,nodes\n");
@@ -43,8 +41,7 @@ pub(super) fn town() -> Result<Figure, SetupError> {
     let trace = voxels::run(
         &voxels::Scene::town(1, VOXELS),
         &voxels::Scenario::new(2, 1),
-    )
-    .expect("there is room for robots in a town");
+    )?;
     let end = trace.ticks_to(1.0).unwrap_or(trace.seen.len() as u32);
     let nodes = |tick| trace.octree(tick).nodes();
     let inside = curve("voxel-survey".into(), METHODS.len(), end, &nodes);

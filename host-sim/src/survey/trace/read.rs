@@ -11,9 +11,16 @@ use serde::Deserialize;
 use super::{Deed, KIND, Record, Trace, digest};
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
-use crate::survey::terrain_source::LARGEST;
+use crate::survey::terrain_file::LARGEST;
 use crate::survey::{Kill, Planner, Scenario, Terrain, look};
 use crate::trace::TraceError;
+
+/// Steps of the longest run that is read: a step without a record is one in which all
+/// robots slept, and a file may claim any number of them.
+const MOST_STEPS: u32 = 10_000_000;
+
+/// Rounding that a position may be beyond the box by.
+const TOLERANCE: f32 = 1e-3;
 
 #[derive(Deserialize)]
 struct Header {
@@ -46,10 +53,11 @@ struct Heights {
 }
 
 impl Trace {
-    /// Reads a trace, and checks that it is whole. In the last step of a run that was
-    /// given up, robots that slept are taken to look too.
+    /// Reads a trace, and checks that it is whole and that each record can be: robots
+    /// that there are and that live, in their order, in the box. In the last step of a
+    /// run that was given up, robots that slept are taken to look too.
     ///
-    /// Cost: a look for each record.
+    /// Cost: a look for each record, and for each flight the columns crossed.
     ///
     /// # Errors
     /// What is wrong, and in which line.
@@ -57,10 +65,16 @@ impl Trace {
         let (mut header, mut records) = KIND.read::<Header, _>(from, parse_record, digest)?;
         complete_stops(&mut records, &std::mem::take(&mut header.stops));
         let mut replay = Replay::new(header)?;
-        let robots = replay.at.len();
-        if let Some(record) = records.iter().find(|it| usize::from(it.robot) >= robots) {
-            let reason = format!("robot {} has no start", record.robot);
-            return Err(TraceError::Survey(reason));
+        let mut last = None;
+        for (record, line) in records.iter().zip(3..) {
+            if let Some(expected) = replay.objection(record, last) {
+                return Err(TraceError::Line {
+                    line,
+                    expected,
+                    found: record.to_string(),
+                });
+            }
+            last = Some(record);
         }
         for step in records.chunk_by(|a, b| a.tick == b.tick) {
             replay.step(step);
@@ -102,11 +116,6 @@ struct Replay {
 
 impl Replay {
     fn new(header: Header) -> Result<Self, TraceError> {
-        let range = header.range;
-        if !(range > 0.0 && range <= MAX_RANGE) {
-            let reason = format!("a range of {range} cells is not above 0 and at most {MAX_RANGE}");
-            return Err(TraceError::Survey(reason));
-        }
         let robots = header.starts.len();
         let starts = header.starts.into_iter();
         let starts: Vec<_> = starts.map(|[x, y, z]| Point { x, y, z }).collect();
@@ -115,7 +124,7 @@ impl Replay {
             planner: header.planner,
             robots,
             limits: Limits {
-                range,
+                range: header.range,
                 step: header.step,
                 min_altitude: header.min_altitude,
                 ceiling: header.ceiling,
@@ -129,13 +138,77 @@ impl Replay {
             kills: deaths.map(|(robot, step)| Kill { robot, step }).collect(),
             max_ticks: header.max_ticks,
         };
+        let checked = scenario.check();
+        checked.map_err(|error| TraceError::Survey(error.to_string()))?;
         let terrain = header.world.terrain()?;
-        Ok(Self {
+        let replay = Self {
             known: vec![false; terrain.extent().cells() as usize],
             at: starts.clone(),
             has_stopped: vec![false; robots],
             trace: Trace::new(&terrain, &scenario, starts),
-        })
+        };
+        match replay.at.iter().position(|at| !replay.is_in_box(*at)) {
+            Some(robot) => {
+                let Point { x, y, z } = replay.at[robot];
+                let inside = replay.the_box();
+                let reason = format!("robot {robot} starts at {x},{y},{z}, not in {inside}");
+                Err(TraceError::Survey(reason))
+            }
+            None => Ok(replay),
+        }
+    }
+
+    fn is_in_box(&self, at: Point) -> bool {
+        let Extent { width, height } = self.trace.extent;
+        let within = |v: f32, end: f32| (-TOLERANCE..=end + TOLERANCE).contains(&v);
+        within(at.x, width.into())
+            && within(at.y, height.into())
+            && within(at.z, self.trace.scenario.limits.ceiling)
+    }
+
+    fn the_box(&self) -> String {
+        let Extent { width, height } = self.trace.extent;
+        let ceiling = self.trace.scenario.limits.ceiling;
+        format!("the box from 0,0,0 to {width},{height},{ceiling}")
+    }
+
+    /// What should stand in a record, if something else does.
+    fn objection(&self, record: &Record, last: Option<&Record>) -> Option<String> {
+        let Trace {
+            scenario, extent, ..
+        } = &self.trace;
+        let (robot, robots) = (usize::from(record.robot), self.at.len());
+        let steps = scenario.max_ticks.min(MOST_STEPS);
+        let place = |record: &Record| (record.tick, record.robot);
+        let dies = |kill: &&Kill| kill.robot == robot && kill.step <= record.tick;
+        if robot >= robots {
+            return Some(format!("a robot from 0 to {}", robots - 1));
+        }
+        if record.tick >= steps {
+            return Some(format!("a step before {steps}"));
+        }
+        if last.is_some_and(|last| place(last) >= place(record)) {
+            return Some(
+                "a later step, or a later robot of the same, than in the line before".into(),
+            );
+        }
+        if let Some(kill) = scenario.kills.iter().find(dies) {
+            return Some(format!(
+                "a robot that lives; robot {robot} dies before step {}",
+                kill.step
+            ));
+        }
+        if !self.is_in_box(record.at) {
+            return Some(format!("a position in {}", self.the_box()));
+        }
+        if record.target.is_some_and(|target| !extent.contains(target)) {
+            return Some(format!("a goal in the {extent} columns, or -1,-1 for none"));
+        }
+        if !record.gain.is_finite() {
+            return Some("a finite gain".into());
+        }
+        let all = extent.cells();
+        (record.known > all).then(|| format!("at most {all} known columns"))
     }
 
     /// One step of the fleet.
@@ -379,10 +452,58 @@ mod tests {
             ("\"version\":1", "\"version\":9", "version 9"),
             ("\"starts\":[[", "\"starts\":[[],[", "line 1"),
             ("\"range\":8.0", "\"range\":1e9", "range"),
+            ("\"step\":2.0", "\"step\":0.0", "step"),
+            ("\"deaths\":[[1,", "\"deaths\":[[7,", "no robot 7"),
+            ("\"starts\":[[2.5,", "\"starts\":[[99.5,", "robot 0 starts"),
             ("\"heights\":[[", "\"heights\":[[7,", "row 2"),
         ] {
             let error = error(&text.replacen(from, to, 1));
             assert!(error.contains(reason), "{error}");
         }
+    }
+
+    /// Each with a digest that fits, as somebody would write it who means harm.
+    #[test]
+    fn records_that_cannot_be_are_refused_by_their_line() {
+        let good = trace(Planner::Fcao);
+        let refused = |change: &dyn Fn(&mut Record), reason: &str| {
+            let mut bad = good.clone();
+            change(&mut bad.records[5]);
+            let error = Trace::read(text(&bad).as_bytes()).unwrap_err().to_string();
+            assert!(error.contains("line 8"), "{error}");
+            assert!(error.contains(reason), "{error}");
+        };
+        for far in [4_294_967_296.0, 24.5, -1.0, 1e30, f32::MIN] {
+            refused(
+                &|it| it.at.x = far,
+                "a position in the box from 0,0,0 to 24,24,40",
+            );
+            refused(&|it| it.at.y = far, "a position");
+        }
+        refused(&|it| it.at.z = 41.0, "a position");
+        refused(&|it| it.at.z = -1.0, "a position");
+        refused(&|it| it.at.z = f32::NAN, "13 numbers");
+        refused(&|it| it.robot = 3, "a robot from 0 to 2");
+        refused(&|it| it.tick = u32::MAX, "a step before 20000");
+        refused(&|it| it.tick = 0, "a later step");
+        refused(&|it| it.target = Some(Cell::new(24, 0)), "a goal in");
+        refused(&|it| it.gain = f32::INFINITY, "a finite gain");
+        refused(&|it| it.known = 577, "at most 576 known columns");
+
+        let mut dead = good.clone();
+        let last = dead.records.iter().rposition(|it| it.robot == 1).unwrap();
+        dead.scenario.kills[0].step = dead.records[last].tick;
+        let error = Trace::read(text(&dead).as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(&format!("line {}", last + 3)), "{error}");
+        assert!(error.contains("robot 1 dies"), "{error}");
+    }
+
+    #[test]
+    fn a_run_of_ever_so_many_steps_is_not_believed() {
+        let mut long = trace(Planner::Fcao);
+        long.scenario.max_ticks = u32::MAX;
+        long.records.last_mut().unwrap().tick = u32::MAX - 1;
+        let error = Trace::read(text(&long).as_bytes()).unwrap_err().to_string();
+        assert!(error.contains("a step before 10000000"), "{error}");
     }
 }

@@ -18,8 +18,9 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::run::{Scenario, VoxelTrace, look, visible};
-use super::scene::{LARGEST, Scene};
+use super::scene::{LARGEST, LEVELS, Scene};
 use crate::fleet::Sent;
+use crate::survey::error::SurveyError;
 use crate::trace::{Kind, TraceError, hex_digits};
 
 const KIND: Kind = Kind {
@@ -94,16 +95,14 @@ impl VoxelTrace {
         let digest = |records: &[Record]| digest(records.iter().copied());
         let (header, records) = KIND.read::<Header, _>(from, Record::parse, digest)?;
         let (scene, scenario) = (header.world.scene()?, header.scenario);
-        let (robots, range) = (scenario.robots, scenario.range);
-        if range > MAX_RANGE {
-            let reason = format!("a range of {range} voxels is more than {MAX_RANGE}");
-            return Err(TraceError::Survey(reason));
-        }
+        let checked = scenario.check(&scene);
+        checked.map_err(|error| TraceError::Survey(error.to_string()))?;
+        let robots = scenario.robots;
         let in_order = |(i, record): (usize, &Record)| {
             (record.tick, record.robot) == (i / robots, i % robots)
                 && scene.is_occupied(record.at).is_some()
         };
-        if robots == 0 || records.len() < robots || !records.len().is_multiple_of(robots) {
+        if records.len() < robots || !records.len().is_multiple_of(robots) {
             let reason = format!("{robots} robots do not have {} records", records.len());
             return Err(TraceError::Survey(reason));
         }
@@ -136,7 +135,10 @@ impl VoxelTrace {
             trace.ways[record.robot].push(record.at);
         }
         trace.look_again();
-        Ok(trace)
+        match trace.visible {
+            0 => Err(TraceError::Survey(SurveyError::NothingToSee.to_string())),
+            _ => Ok(trace),
+        }
     }
 
     /// What was seen, and what should not have been flown, follows from the ways.
@@ -243,13 +245,18 @@ impl Levels {
             .and_then(|level| level.first())
             .map_or(0, String::len);
         let sides = 1..=usize::from(LARGEST);
-        if !sides.contains(&width) || !sides.contains(&height) || levels.len() > *sides.end() {
+        if !sides.contains(&width) || !sides.contains(&height) || levels.len() > LEVELS.into() {
             let reason = format!("the scene has {width}×{height}×{} voxels", levels.len());
             return Err(TraceError::Survey(reason));
         }
         for level in levels {
             if level.len() != height || level.iter().any(|row| row.len() != width) {
                 let reason = format!("the levels of the scene are not all {width}×{height}");
+                return Err(TraceError::Survey(reason));
+            }
+            let mut signs = level.iter().flat_map(|row| row.bytes());
+            if signs.any(|sign| sign != b'#' && sign != b'.') {
+                let reason = "the scene has signs that are neither `#` nor `.`".into();
                 return Err(TraceError::Survey(reason));
             }
         }
@@ -327,7 +334,11 @@ mod tests {
             ("\n0,1,", "\n0,one,", "line 4"),
             ("\n0,1,", "\n0,2,", "digest"),
             ("\"version\":1", "\"version\":9", "version 9"),
-            ("\"robots\":2", "\"robots\":0", "0 robots"),
+            ("\"robots\":2", "\"robots\":0", "--robots 0"),
+            ("\"robots\":2", "\"robots\":4000000000", "1 to 255"),
+            ("\"loss\":0.3", "\"loss\":3.0", "--loss 3"),
+            ("\"range\":6", "\"range\":1", "2 to 12"),
+            ("\"levels\":[[\"#", "\"levels\":[[\"?", "neither"),
             ("\"robots\":2", "\"robots\":5", "5 robots"),
             ("\"robots\":2", "\"robots\":3", "line 5"),
             ("\"robots\":2", "\"robots\":1", "line 4"),

@@ -5,19 +5,20 @@ use std::collections::{BTreeSet, HashSet};
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
-use planner_core::voxel_survey::{Action, Config, VoxelSurvey};
+use planner_core::voxel_survey::{Action, Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Point, Stop};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use super::scene::Scene;
+use super::scene::{LARGEST, LEVELS, Scene};
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
 use crate::survey::DEFAULT_BYTE_BUDGET;
 use crate::survey::draw::{Block, oblique};
+use crate::survey::error::{SurveyError, check_robots, check_share};
 use crate::survey::octree::OcTree;
 
-type Robot = VoxelSurvey<8, 8, 24>;
+type Robot = VoxelSurvey<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>;
 
 /// Words of its map that a robot repeats in each step, in turn.
 const IN_TURN: usize = 16;
@@ -25,9 +26,9 @@ const IN_TURN: usize = 16;
 /// What a run is a function of, beside the scene.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Scenario {
-    /// Number of robots.
+    /// Number of robots, 1 to 255.
     pub robots: usize,
-    /// Sensor range in voxels.
+    /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
     pub range: u8,
     /// What carries what robots tell each other.
     pub medium: MediumKind,
@@ -52,6 +53,33 @@ impl Scenario {
             loss: 0.0,
             seed,
             max_ticks: 20_000,
+        }
+    }
+
+    /// Whether the scenario can be flown in `scene`.
+    ///
+    /// # Errors
+    /// The first setting that is out of its range, and the range.
+    pub fn check(&self, scene: &Scene) -> Result<(), SurveyError> {
+        check_robots(self.robots)?;
+        check_share("loss", self.loss)?;
+        if !(2..=MAX_RANGE).contains(&self.range) {
+            let expected = format!("2 to {MAX_RANGE} voxels");
+            return Err(SurveyError::setting("range", self.range, expected));
+        }
+        let (extent, levels) = (scene.extent(), scene.levels());
+        let sides = 1..=LARGEST;
+        let fits = sides.contains(&extent.width)
+            && sides.contains(&extent.height)
+            && (1..=LEVELS).contains(&levels);
+        match fits {
+            true => Ok(()),
+            false => Err(SurveyError::Scene {
+                extent,
+                levels,
+                side: LARGEST,
+                most: LEVELS,
+            }),
         }
     }
 }
@@ -120,10 +148,10 @@ fn look_for(
 ///
 /// # Errors
 /// As [`Simulation::new`].
-pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, String> {
+pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, SurveyError> {
     let mut run = Simulation::new(scene, scenario)?;
     while run.step() {}
-    Ok(run.trace)
+    Ok(run.finish())
 }
 
 /// A run that goes on step by step, for whoever wants to watch.
@@ -144,13 +172,14 @@ impl Simulation {
     /// corner, or wherever there is room first.
     ///
     /// # Errors
-    /// There is no room for a robot.
-    pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, String> {
+    /// A setting is out of its range, there is no room for a robot, or nothing to see.
+    pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, SurveyError> {
+        scenario.check(scene)?;
         let start = scene
             .voxels()
             .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
             .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
-            .ok_or("there is no room for a robot")?;
+            .ok_or(SurveyError::NoPose)?;
         let config = Config {
             range: scenario.range,
             link: LinkConfig {
@@ -161,9 +190,12 @@ impl Simulation {
         let mut robots = Vec::new();
         for id in 0..scenario.robots {
             let robot = Robot::new(scene.extent(), scene.levels(), config, id as u8);
-            robots.push(Box::new(robot.map_err(|error| error.to_string())?));
+            robots.push(Box::new(robot?));
         }
         let visible = visible(scene, start, scenario.range);
+        if visible.is_empty() {
+            return Err(SurveyError::NothingToSee);
+        }
         let trace = VoxelTrace {
             scenario: scenario.clone(),
             scene: scene.clone(),
@@ -196,6 +228,11 @@ impl Simulation {
     /// What has happened so far.
     pub fn trace(&self) -> &VoxelTrace {
         &self.trace
+    }
+
+    /// What happened.
+    pub fn finish(self) -> VoxelTrace {
+        self.trace
     }
 
     /// One step of the fleet; false if the run is over, and then nothing changes any more.
@@ -376,7 +413,8 @@ impl VoxelTrace {
 
     /// Whether everything that can be seen was seen, without a violation.
     pub fn complete(&self) -> bool {
-        self.seen.last() == Some(&self.visible) && self.violations == 0
+        let all = Some(&self.visible).filter(|&&all| all > 0);
+        all.is_some() && self.seen.last() == all && self.violations == 0
     }
 
     /// What had been seen after `tick` steps as an octree, free voxels included.

@@ -16,6 +16,8 @@ pub struct Scene {
 
 /// Columns along a side of the largest scene.
 pub(super) const LARGEST: u16 = 64;
+/// Levels of the highest scene.
+pub(super) const LEVELS: u8 = 24;
 
 impl Scene {
     /// A scene in which `is_occupied` says where something is.
@@ -35,14 +37,14 @@ impl Scene {
 
     /// A town of `side`×`side` columns drawn by `seed`: streets, buildings of one or
     /// two storeys with rooms, doors, windows, upper floors that stand out over the
-    /// street, footbridges, and vehicles with room beneath.
+    /// street, footbridges, and vehicles with room beneath. Robots fly in towns of up to
+    /// 64×64 columns.
     pub fn town(seed: u64, side: u16) -> Self {
         /// A block with its street, the street, and a storey with its ceiling.
         const BLOCK: i16 = 20;
         const STREET: i16 = 8;
         const STOREY: i16 = 6;
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let side = side.min(LARGEST);
         let mut scene = Self::from_fn(format!("town-{seed}"), Extent::new(side, side), 18, |v| {
             v.z == 0
         });

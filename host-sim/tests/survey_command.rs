@@ -1,0 +1,220 @@
+//! `host-sim survey` as a stranger calls it: what it refuses, and in which words.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use assert_cmd::Command;
+use image::{GrayImage, Luma};
+use serde_json::Value;
+
+/// No refusal takes longer.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn survey(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::cargo_bin("host-sim").unwrap();
+    command
+        .current_dir(folder)
+        .timeout(PATIENCE)
+        .arg("survey")
+        .args(arguments.split_whitespace());
+    command
+}
+
+/// Exit status 2, a message with all of `words`, and no output folder.
+fn assert_refused(folder: &Path, arguments: &str, words: &[&str]) {
+    let assert = survey(folder, arguments).assert().code(2);
+    let output = assert.get_output();
+    let message = String::from_utf8_lossy(&output.stderr);
+    for word in words {
+        assert!(
+            message.contains(word),
+            "{arguments}: {word:?} is not in: {message}"
+        );
+    }
+    assert!(output.stdout.is_empty());
+    assert!(!folder.join("out").exists());
+}
+
+fn picture(path: &Path, width: u32, height: u32, shade: u8) {
+    let picture = GrayImage::from_pixel(width, height, Luma([shade]));
+    picture.save(path).unwrap();
+}
+
+#[test]
+fn what_does_not_apply_is_refused_by_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for option in [
+        "--planner fcao",
+        "--planner coordinated-survey",
+        "--step 9",
+        "--min-altitude 2",
+        "--ceiling 40",
+        "--skip 0.9",
+        "--skip 0",
+        "--kill 0@1",
+    ] {
+        let name = option.split(' ').next().unwrap();
+        let arguments = format!("--terrain town:1 --size 24 {option}");
+        assert_refused(path, &arguments, &[name, "does not apply", "town"]);
+    }
+    assert_refused(
+        path,
+        "--terrain town:1 --size 200",
+        &["--size 200", "8 to 64"],
+    );
+    picture(&path.join("flat.png"), 16, 16, 0);
+    assert_refused(
+        path,
+        "--terrain flat.png --size 16",
+        &["--size", "does not apply"],
+    );
+    assert_refused(
+        path,
+        "--medium ideal --byte-budget 55",
+        &["--byte-budget", "ideal"],
+    );
+}
+
+#[test]
+fn settings_out_of_their_ranges_are_refused_over_every_terrain() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    picture(&path.join("flat.png"), 16, 16, 0);
+    let places = [
+        "--terrain gaussian:1 --size 16",
+        "--terrain urban:1 --size 16",
+        "--terrain flat.png",
+        "--terrain town:1 --size 16",
+    ];
+    for place in places {
+        for range in ["0", "nan", "inf", "-1", "12.5", "40", "1e30"] {
+            let arguments = format!("{place} --range={range}");
+            assert_refused(path, &arguments, &["--range", "12"]);
+        }
+        for share in ["nan", "-0.1", "1.5", "inf"] {
+            assert_refused(path, &format!("{place} --loss={share}"), &["--loss", "0 "]);
+        }
+        for robots in ["0", "65", "-1"] {
+            let arguments = format!("{place} --robots={robots}");
+            assert_refused(path, &arguments, &["--robots", "1..=64"]);
+        }
+    }
+    for place in &places[..3] {
+        for number in ["0", "nan", "inf", "-1", "1e9"] {
+            let arguments = format!("{place} --step={number}");
+            assert_refused(path, &arguments, &["--step", "0.1 to 100"]);
+        }
+        for number in ["nan", "inf", "-1", "8"] {
+            let arguments = format!("{place} --min-altitude={number}");
+            assert_refused(path, &arguments, &["--min-altitude", "range of 8"]);
+        }
+        for number in ["nan", "inf", "-1", "1e9"] {
+            let arguments = format!("{place} --ceiling={number}");
+            assert_refused(path, &arguments, &["--ceiling", "at most 500"]);
+        }
+        let arguments = format!("{place} --robots 2 --kill 7@3");
+        assert_refused(path, &arguments, &["--kill", "no robot 7", "0 to 1"]);
+    }
+    assert_refused(path, "--terrain town:1 --range 2.5", &["--range", "whole"]);
+    assert_refused(path, "--terrain town:1 --range 1", &["--range", "from 2"]);
+}
+
+#[test]
+fn robots_that_do_not_fit_are_refused_with_what_would() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    picture(&path.join("small.png"), 3, 3, 4);
+    assert_refused(
+        path,
+        "--terrain small.png --robots 2",
+        &["2 robots", "3×3", "--robots 1"],
+    );
+    picture(&path.join("tiny.png"), 1, 1, 4);
+    assert_refused(path, "--terrain tiny.png --robots 1", &["1×1", "3×3"]);
+    assert_refused(
+        path,
+        "--terrain gaussian:0 --size 8 --robots 16",
+        &["16 robots", "--robots 9"],
+    );
+    picture(&path.join("high.png"), 16, 16, 255);
+    assert_refused(
+        path,
+        "--terrain high.png --robots 2",
+        &["66.75", "ceiling of 40", "--ceiling 66.75"],
+    );
+    // And what would does.
+    let arguments = "--terrain high.png --robots 2 --ceiling 66.75 --json";
+    let assert = survey(path, arguments).assert().success();
+    let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(summary["complete"], true);
+    assert_eq!(summary["violations"], 0);
+}
+
+#[test]
+fn files_that_are_no_terrains_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for (file, content, words) in [
+        (
+            "tree.ot",
+            "# Octomap OcTree file\n",
+            ["OctoMap .ot", "convert_octree"],
+        ),
+        ("cloud.pcd", "# .PCD v0.7\n", ["PCD", "octomap_server"]),
+        (
+            "mesh.ply",
+            "ply\nformat ascii 1.0\n",
+            ["PLY mesh", "binvox"],
+        ),
+        ("photo.png", "\u{42}\u{4d}", ["a BMP picture", "magick"]),
+        (
+            "flat.yaml",
+            "image: a.pgm",
+            ["a flat map", "host-sim explore"],
+        ),
+        ("empty.png", "", ["is empty", "grey PNG"]),
+        (
+            "cut.bt",
+            "# Octomap OcTree binary file\nsize 9\nres 1\ndata\n",
+            ["cut off", ".bt"],
+        ),
+    ] {
+        fs::write(path.join(file), content).unwrap();
+        let arguments = format!("--terrain {file}");
+        assert_refused(path, &arguments, &[&[file][..], &words].concat());
+    }
+    assert_refused(path, "--terrain moon:1", &["moon:1", "gaussian:SEED"]);
+    assert_refused(path, "--terrain .", &["folder", "grey PNG"]);
+    #[cfg(unix)]
+    assert_refused(path, "--terrain /dev/zero", &["/dev/zero", "device"]);
+    picture(&path.join("wide.png"), 513, 1, 0);
+    assert_refused(path, "--terrain wide.png", &["513×1", "1 to 512"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_to_stops_the_survey_before_it_starts() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("taken"), "a file").unwrap();
+    for place in ["gaussian:1", "town:1"] {
+        let arguments = format!("--terrain {place} --size 16 --robots 1 --out taken");
+        assert_refused(path, &arguments, &["taken", "--out"]);
+    }
+}
+
+#[test]
+fn a_survey_that_is_given_up_says_what_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    for place in ["gaussian:1", "town:1"] {
+        let arguments = format!("--terrain {place} --size 24 --robots 1 --max-ticks 2 --json");
+        let assert = survey(folder.path(), &arguments).assert().code(1);
+        let output = assert.get_output();
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(summary["complete"], false);
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains("not complete"), "{message}");
+        assert!(message.contains("unseen after 2 steps"), "{message}");
+    }
+}

@@ -58,6 +58,7 @@ impl From<FrameError> for PlannerResult {
             FrameError::Check => Self::FrameCheck,
             FrameError::OtherGrid(_) => Self::FrameOtherGrid,
             FrameError::Own => Self::FrameOwn,
+            FrameError::SameId(_) => Self::FrameSameId,
             FrameError::Field(_) => Self::FrameField,
         }
     }

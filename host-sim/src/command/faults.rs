@@ -5,7 +5,6 @@ use host_sim::fleet::{
     Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure,
 };
 use host_sim::medium::{AirFaults, Forger, Partition, Reach};
-use planner_core::RobotId;
 
 use super::explore::parse_share;
 

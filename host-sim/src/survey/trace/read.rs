@@ -4,7 +4,7 @@
 use std::io::BufRead;
 
 use planner_core::surface::Height;
-use planner_core::survey::{Limits, MAX_RANGE};
+use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point, Stop};
 use serde::Deserialize;
 

@@ -12,7 +12,6 @@ use std::fmt::{self, Write as _};
 use std::io::{self, BufRead};
 
 use planner_core::volume::Voxel;
-use planner_core::voxel_survey::MAX_RANGE;
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

@@ -12,11 +12,7 @@
 //! Which of the two a cell is, the map tells: only a robot that stood on a cell can have
 //! looked from it, so a visited frontier cell is one that shows nothing. Where such a
 //! cell refuses a step too, all cells of the round count as closed.
-//!
-//! Where roles change bodies, a role tells the next body what made it turn round. What is
-//! only told is tried once more, in a second last round, before the robot gives up.
 
-use super::maybe::Maybe;
 use crate::cell::Cell;
 use crate::map::{Map, TileIndex};
 
@@ -24,21 +20,6 @@ use crate::map::{Map, TileIndex};
 const FIRST_PAUSE: u32 = 4;
 /// Limit of the doublings.
 const LONGEST: u8 = 12;
-
-/// Who says that a cell cannot be entered; the surer, the greater.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Refusal {
-    /// The body that the role had before, some time ago.
-    Told = 1,
-    /// A robot stood there and stayed.
-    Robot = 2,
-    /// The robot itself was refused.
-    Cell = 3,
-}
-
-/// Ticks that the last round waits for before it takes for granted what it was told:
-/// longer than a role remembers.
-const TOLD_PAUSE: u32 = 2 * u8::MAX as u32 + 2;
 
 /// What to do when nothing else is left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,13 +48,9 @@ pub(crate) struct Aside<const TW: usize, const TH: usize> {
     /// The tick in which the round ends.
     until: u32,
     round: u8,
-    /// The surest of the refusals in this round.
-    refusal: Maybe<Refusal>,
-    /// The tick until which what was told is in doubt.
-    told_until: u32,
-    has_told: bool,
-    /// Whether what was told has been tried in a further last round.
-    is_verified: bool,
+    has_refused: bool,
+    /// Whether something other than a robot refused.
+    is_blocked: bool,
     /// Frontier cells that show nothing.
     unseen: u16,
     /// Whether the robot learnt anything in this round.
@@ -90,10 +67,8 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
             unseen_at: Cell::new(0, 0),
             until: 0,
             round: 0,
-            refusal: Maybe::Nothing,
-            told_until: 0,
-            has_told: false,
-            is_verified: false,
+            has_refused: false,
+            is_blocked: false,
             unseen: 0,
             has_learnt: false,
             all_closed: false,
@@ -104,19 +79,14 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     pub(crate) fn reset(&mut self) {
         self.begin_round();
         self.round = 0;
-        self.is_verified = false;
-    }
-
-    const fn has_refused(&self) -> bool {
-        matches!(self.refusal, Maybe::Just(_))
     }
 
     fn begin_round(&mut self) {
-        if self.has_refused() || self.unseen > 0 {
+        if self.has_refused || self.unseen > 0 {
             self.cells = [[0; TW]; TH];
         }
-        self.refusal = Maybe::Nothing;
-        self.has_told = false;
+        self.has_refused = false;
+        self.is_blocked = false;
         self.unseen = 0;
         self.has_learnt = false;
         self.all_closed = false;
@@ -125,17 +95,17 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     /// Ends the round if it is time. Says whether cells are tried again. Work: nothing,
     /// or a word a tile.
     pub(crate) fn tick(&mut self, patience: u8, now: u32) -> bool {
-        let is_over = self.has_refused() && !self.is_last_round(patience) && now >= self.until;
+        let is_over = self.has_refused && !self.is_last_round(patience) && now >= self.until;
         if is_over {
-            self.next_round(patience);
+            self.next_round(now);
         }
         is_over
     }
 
     /// Begins a new round. Work: a word a tile.
-    pub(crate) fn next_round(&mut self, patience: u8) {
-        if self.has_refused() {
-            self.is_verified |= self.is_last_round(patience);
+    pub(crate) fn next_round(&mut self, now: u32) {
+        // Cells that were not waited for are none the surer for it.
+        if self.has_refused && now >= self.until {
             self.round = self.round.saturating_add(1);
         }
         self.begin_round();
@@ -146,11 +116,12 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     }
 
     /// A cell could not be entered.
-    pub(crate) fn refuse(&mut self, cell: Cell, why: Refusal, now: u32) {
-        if self.refusal.get().is_none_or(|surest| why >= surest) {
-            self.refusal = Maybe::Just(why);
+    pub(crate) fn refuse(&mut self, cell: Cell, by_robot: bool, now: u32) {
+        if !by_robot || !self.is_blocked {
             self.refused_at = cell;
         }
+        self.has_refused = true;
+        self.is_blocked |= !by_robot;
         let pause = FIRST_PAUSE
             << if self.round < LONGEST {
                 self.round
@@ -158,13 +129,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
                 LONGEST
             };
         self.until = now.saturating_add(pause);
-        let is_new = self.add(cell);
-        if why == Refusal::Told {
-            self.has_told = true;
-            self.told_until = now.saturating_add(TOLD_PAUSE);
-        } else {
-            self.all_closed |= !is_new;
-        }
+        self.all_closed |= !self.add(cell);
     }
 
     /// No look from this frontier cell showed `unseen` beside it.
@@ -188,7 +153,6 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     /// The robot learnt something: what refused is tried again soon.
     pub(crate) fn renew(&mut self) {
         self.round = self.round.min(1);
-        self.is_verified = false;
         self.has_learnt = true;
     }
 
@@ -200,7 +164,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
 
     /// The cells of a tile that are no goals.
     pub(crate) fn cells(&self, at: TileIndex) -> u64 {
-        if !self.has_refused() && self.unseen == 0 {
+        if !self.has_refused && self.unseen == 0 {
             return 0;
         }
         let row = self.cells.get(usize::from(at.y));
@@ -212,7 +176,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     /// one of them is set aside.
     #[inline] // mostly there are none
     pub(crate) fn closed(&self, at: TileIndex, map: &Map<TW, TH>) -> u64 {
-        if !self.has_refused() {
+        if !self.has_refused {
             return 0;
         }
         let cells = self.cells(at);
@@ -225,26 +189,20 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     /// What is to be done if of so many frontier cells none is left that is worth a look.
     pub(crate) fn verdict(&self, patience: u8, frontiers: u32, now: u32) -> Verdict {
         let all_unseen = self.unseen > 0 && u32::from(self.unseen) >= frontiers;
-        if all_unseen || !self.has_refused() && self.unseen > 0 {
+        if all_unseen || !self.has_refused && self.unseen > 0 {
             return match self.has_learnt {
                 true => Verdict::Again,
                 false => Verdict::Unseen(self.unseen_at),
             };
         }
-        let Some(surest) = self.refusal.get() else {
-            return Verdict::Nothing;
-        };
-        if !self.is_last_round(patience) {
-            return match now < self.until {
-                true => Verdict::Wait,
-                false => Verdict::Again,
-            };
-        }
-        match surest {
-            _ if self.has_told && now < self.told_until => Verdict::Wait,
-            _ if self.has_told && !self.is_verified => Verdict::Again,
-            Refusal::Robot => Verdict::Held(self.refused_at),
-            Refusal::Cell | Refusal::Told => Verdict::Blocked(self.refused_at),
+        match self.has_refused {
+            false => Verdict::Nothing,
+            true if self.is_last_round(patience) => match self.is_blocked {
+                true => Verdict::Blocked(self.refused_at),
+                false => Verdict::Held(self.refused_at),
+            },
+            true if now < self.until => Verdict::Wait,
+            true => Verdict::Again,
         }
     }
 }
@@ -277,7 +235,7 @@ mod tests {
             for &door in &doors {
                 now += 3;
                 assert!(!aside.tick(PATIENCE, now));
-                aside.refuse(door, Refusal::Cell, now);
+                aside.refuse(door, false, now);
             }
             assert_eq!(closed(&aside), 24);
             assert_eq!(aside.verdict(PATIENCE, 30, now), Verdict::Wait);
@@ -289,7 +247,7 @@ mod tests {
         for &door in &doors {
             now += 100_000;
             assert!(!aside.tick(PATIENCE, now));
-            aside.refuse(door, Refusal::Cell, now);
+            aside.refuse(door, false, now);
         }
         assert_eq!(closed(&aside), 24);
         assert_eq!(
@@ -303,25 +261,10 @@ mod tests {
     #[test]
     fn only_robots_in_the_way_are_told_apart() {
         let mut aside = Small::new();
-        aside.refuse(Cell::new(3, 3), Refusal::Robot, 0);
+        aside.refuse(Cell::new(3, 3), true, 0);
         assert_eq!(aside.verdict(1, 30, 0), Verdict::Held(Cell::new(3, 3)));
-        aside.refuse(Cell::new(4, 3), Refusal::Cell, 0);
+        aside.refuse(Cell::new(4, 3), false, 0);
         assert_eq!(aside.verdict(1, 30, 0), Verdict::Blocked(Cell::new(4, 3)));
-    }
-
-    #[test]
-    fn what_was_told_is_tried_once_more_before_it_is_the_reason() {
-        let mut aside = Small::new();
-        let door = Cell::new(3, 3);
-        aside.refuse(door, Refusal::Told, 0);
-        assert_eq!(aside.verdict(1, 30, 511), Verdict::Wait);
-        assert_eq!(aside.verdict(1, 30, 512), Verdict::Again);
-        aside.next_round(1);
-        assert_eq!(aside.verdict(1, 30, 512), Verdict::Nothing);
-        aside.refuse(door, Refusal::Told, 600);
-        assert_eq!(aside.verdict(1, 30, 1112), Verdict::Blocked(door));
-        aside.refuse(Cell::new(4, 4), Refusal::Robot, 700);
-        assert_eq!(aside.verdict(1, 30, 1112), Verdict::Held(Cell::new(4, 4)));
     }
 
     #[test]
@@ -336,15 +279,15 @@ mod tests {
         assert_eq!((aside.cells(at), aside.closed(at, &map)), (bit, 0));
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
         let (_, other) = TileIndex::of(Cell::new(1, 1)).unwrap();
-        aside.refuse(Cell::new(1, 1), Refusal::Cell, 0);
+        aside.refuse(Cell::new(1, 1), false, 0);
         assert_eq!(
             (aside.cells(at), aside.closed(at, &map)),
             (bit | other, other)
         );
         assert_eq!(aside.verdict(8, 1, 0), Verdict::Unseen(Cell::new(6, 5)));
-        aside.refuse(frontier, Refusal::Cell, 0);
+        aside.refuse(frontier, false, 0);
         assert_eq!(aside.closed(at, &map), bit | other);
-        aside.next_round(8);
+        aside.next_round(9);
         assert_eq!(
             (aside.cells(at), aside.verdict(8, 30, 9)),
             (0, Verdict::Nothing)
@@ -357,7 +300,7 @@ mod tests {
         aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
         aside.renew();
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Again);
-        aside.next_round(8);
+        aside.next_round(9);
         aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
     }

@@ -84,9 +84,10 @@
 //!
 //! Where robots may not share a cell, roles walk and bodies stay ([`exchange`]): the
 //! lowest role that is active is never pushed back and never waits, so it stops; then the
-//! next one is the lowest. Bodies set cells aside each for itself; a role that turned
-//! round because of one tells the next body, so each body is told of each cell once in a
-//! round at most.
+//! next one is the lowest. Where looks show nothing or cells refuse, bodies have set aside
+//! different cells, and a role may find its plan worthless in every next one: it asks for
+//! 2,048 exchanges in a spell at most. Then bodies are obstacles to it, and each robot
+//! stops as shown above, with a reason that names the one in its way.
 
 mod aside;
 mod far;
@@ -104,11 +105,11 @@ mod window;
 pub use others::MAX_OTHERS;
 pub use role::{Role, exchange};
 
-use aside::{Aside, Refusal, Verdict};
+use aside::{Aside, Verdict};
 use far::{FarSearch, Outcome};
 use maybe::Maybe;
 use others::Others;
-use role::{Plan, Shunned};
+use role::Plan;
 use surroundings::Surroundings;
 use window::{Aim, Candidate, NearSearch};
 
@@ -332,7 +333,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn learn(&mut self, learnt: Learnt) {
         if learnt.anything() {
             self.role.used = 0;
-            self.role.shunned = Maybe::Nothing;
+            self.role.exchanges = 0;
             self.looks = 0;
             self.far_is_doubtful = true;
             self.around.aside.renew();
@@ -376,38 +377,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             && self.around.is_goal(plan.goal)
             && self.around.is_open(plan.goal)
             && (plan.path.is_empty() || self.next_step().is_some())
-    }
-
-    /// Drops the plan, if there is one, and notes which cell set aside is to blame.
-    fn drop_plan(&mut self) {
-        let Some(plan) = self.role.plan.take() else {
-            return;
-        };
-        let is_shut = |cell: &Cell| self.around.map.is_free(*cell) && !self.around.is_open(*cell);
-        let next = plan.path.first();
-        let next = next.map(|step| self.around.position.step(step));
-        if let Some(shut) = next.into_iter().chain([plan.goal]).find(is_shut) {
-            self.role.shun(Shunned::Closed(shut));
-        } else if self.around.map.is_frontier(plan.goal) && !self.around.is_goal(plan.goal) {
-            self.role.shun(Shunned::Unseen(plan.goal));
-        }
-    }
-
-    /// Sets aside what made the role turn round in another body.
-    fn set_aside(&mut self, shunned: Shunned) {
-        match shunned {
-            Shunned::Closed(cell) => {
-                let now = self.around.now;
-                self.around.aside.refuse(cell, Refusal::Told, now);
-            }
-            Shunned::Unseen(cell) => {
-                let Some(side) = self.around.unknown_sides(cell).next() else {
-                    return;
-                };
-                self.around.aside.show_nothing(cell, cell.step(side));
-            }
-        }
-        self.far_is_doubtful = true;
     }
 
     /// Decides among the frontiers nearby, and which far search is to run if none of
@@ -519,7 +488,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 None
             }
             Verdict::Again => {
-                self.around.aside.next_round(self.config.patience);
+                self.around.aside.next_round(now);
                 None
             }
         }
@@ -539,17 +508,17 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             return self.around.unknown_sides(here).nth(made % sides);
         }
         self.looks = 0;
-        let shunned = Shunned::Unseen(here);
-        self.role.shun(shunned);
-        self.set_aside(shunned);
+        let side = self.around.unknown_sides(here).next();
+        let unseen = side.map_or(here, |side| here.step(side));
+        self.around.aside.show_nothing(here, unseen);
+        self.far_is_doubtful = true;
         None
     }
 
     /// A step was refused: the plan leads nowhere, and others may be as good now.
-    fn refuse(&mut self, cell: Cell, why: Refusal) {
-        self.around.aside.refuse(cell, why, self.around.now);
+    fn refuse(&mut self, cell: Cell, by_robot: bool) {
+        self.around.aside.refuse(cell, by_robot, self.around.now);
         self.far_is_doubtful = true;
-        self.role.shun(Shunned::Closed(cell));
         self.role.plan = None;
         self.role.used = 0;
         self.holds = 0;
@@ -609,7 +578,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.work = 0;
         self.stepping = false;
         self.waiting = Maybe::Nothing;
-        self.role.age();
+        self.role.has_arrived = false;
         if let Some(stop) = self.role.stopped.get() {
             return Action::Stop(stop);
         }
@@ -632,7 +601,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         let now = self.around.now;
         self.far_is_doubtful |= self.around.aside.tick(self.config.patience, now);
         if !self.has_plan() {
-            self.drop_plan();
+            self.role.plan = None;
         }
         if let Some(direction) = self.look() {
             return self.wait(Wait::Look(direction));
@@ -687,7 +656,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.role.stopped = Maybe::Nothing;
         self.role.plan = None;
         self.role.used = 0;
-        self.role.shunned = Maybe::Nothing;
+        self.role.exchanges = 0;
         self.around.aside.reset();
         self.looks = 0;
         self.holds = 0;
@@ -708,11 +677,11 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                 self.role.make_step();
                 self.holds = 0;
             }
-            Motion::Blocked => self.refuse(next, Refusal::Cell),
+            Motion::Blocked => self.refuse(next, false),
             Motion::Held => {
                 self.holds = self.holds.saturating_add(1);
                 if self.holds >= self.config.holds {
-                    self.refuse(next, Refusal::Robot);
+                    self.refuse(next, true);
                 }
             }
         }
@@ -786,9 +755,6 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.stepping = false;
         self.holds = 0;
         self.far.cancel();
-        if let Some(shunned) = role.shunned.get() {
-            self.set_aside(shunned);
-        }
     }
 }
 

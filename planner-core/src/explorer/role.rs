@@ -20,17 +20,10 @@ pub(crate) struct Plan {
     pub(crate) path: Path,
 }
 
-/// A cell that made a role turn round. Bodies do not share what they set aside, so the
-/// role takes it along for 255 ticks: else two bodies could send it to and fro between
-/// them for ever.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum Shunned {
-    /// It refused a step.
-    Closed(Cell),
-    /// A frontier cell that shows nothing.
-    Unseen(Cell),
-}
+/// Exchanges that a role asks for between two things that it learns; then bodies in its
+/// way count as obstacles. Bodies set cells aside each for itself, so that without a limit
+/// they could send roles round and round between them.
+const MOST_EXCHANGES: u16 = 2048;
 
 /// What a robot is about to do. Robot `k` starts with role `k`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,11 +35,10 @@ pub struct Role {
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
     pub(crate) used: u8,
+    /// Exchanges that it asked for since it last learnt anything.
+    pub(crate) exchanges: u16,
     /// Whether it has reached its goal and has not decided since.
     pub(crate) has_arrived: bool,
-    pub(crate) shunned: Maybe<Shunned>,
-    /// Ticks since it shunned that.
-    pub(crate) shunned_for: u8,
     pub(crate) stopped: Maybe<Stop>,
 }
 
@@ -57,9 +49,8 @@ impl Role {
             plan: None,
             since: 0,
             used: 0,
+            exchanges: 0,
             has_arrived: false,
-            shunned: Maybe::Nothing,
-            shunned_for: 0,
             stopped: Maybe::Nothing,
         }
     }
@@ -101,20 +92,6 @@ impl Role {
         Some(here.step(plan.path.first()?))
     }
 
-    pub(crate) fn shun(&mut self, cell: Shunned) {
-        self.shunned = Maybe::Just(cell);
-        self.shunned_for = 0;
-    }
-
-    /// A tick begins: what the role shunned long ago it forgets.
-    pub(crate) fn age(&mut self) {
-        self.has_arrived = false;
-        match self.shunned_for.checked_add(1) {
-            Some(ticks) => self.shunned_for = ticks,
-            None => self.shunned = Maybe::Nothing,
-        }
-    }
-
     pub(crate) fn make_step(&mut self) {
         if let Some(plan) = &mut self.plan {
             plan.path.pop_front();
@@ -140,11 +117,12 @@ impl Role {
 /// 2. Head-on: exchange, both have made their step.
 /// 3. The other is passive, or gives way: exchange; it gets its cell put in front
 ///    of its path.
-/// 4. Else wait: no new plan, nothing is used up.
+/// 4. Else wait: no new plan, nothing is used up. So too if `mine` has asked for 2,048
+///    exchanges since it last learnt anything.
 ///
 /// The bodies then join each other's maps, and neither role acts again in this tick.
 pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
-    if theirs.has_arrived {
+    if theirs.has_arrived || mine.exchanges >= MOST_EXCHANGES {
         return None;
     }
     let (mut mine, mut theirs) = (*mine, *theirs);
@@ -158,5 +136,6 @@ pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(
         return None;
     }
     mine.make_step();
+    mine.exchanges += 1;
     Some((theirs, mine))
 }

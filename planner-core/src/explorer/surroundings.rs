@@ -19,9 +19,19 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
         self.map.free(at)
     }
 
-    /// Free cells of a tile that did not refuse this robot: for its own waves.
+    /// Free cells of a tile that did not refuse this robot, and the one that it stands on:
+    /// for its own waves.
     pub(crate) fn open(&self, at: TileIndex) -> u64 {
-        self.free(at) & !self.aside.closed(at, &self.map)
+        let free = self.free(at);
+        let closed = self.aside.closed(at, &self.map);
+        if closed == 0 {
+            return free;
+        }
+        let own = match TileIndex::of(self.position) {
+            Some((tile, bit)) if tile == at => bit,
+            _ => 0,
+        };
+        free & !(closed & !own)
     }
 
     /// The frontier cells of a tile that are worth a look of this robot.

@@ -127,6 +127,7 @@ const CHECKS: &[Check] = &[
         title: "planner-core's tests with signed frames",
         run: || {
             repeatable(cargo(["test", "-p=planner-core", "--features=keyed"]))
+                .env("PROPTEST_CASES", "256")
                 .run()
                 .map(nothing)
         },
@@ -136,6 +137,7 @@ const CHECKS: &[Check] = &[
         title: "planner-core's tests with approximate mathematics",
         run: || {
             repeatable(cargo(["test", "-p=planner-core", "--features=micromath"]))
+                .env("PROPTEST_CASES", "256")
                 .run()
                 .map(nothing)
         },

@@ -70,7 +70,7 @@ impl Ghost {
             i16::from(dice.roll()) % robot.map().extent().width as i16,
             i16::from(dice.roll()) % robot.map().extent().height as i16,
         );
-        let is_turn = tick / self.period % 2 == 0;
+        let is_turn = (tick / self.period).is_multiple_of(2);
         let (position, goal) = match self.aim {
             // On the robot, on its goal, now here and now there, on its goal as soon as
             // its way ends or it has no more changes, at random, or near it.
@@ -85,7 +85,7 @@ impl Ghost {
             4 => (far, Some(far)),
             _ => (here.step(Direction::from_index(dice.roll())), goal),
         };
-        let is_done = self.aim == 2 && tick % 7 == 0;
+        let is_done = self.aim == 2 && tick.is_multiple_of(7);
         Status {
             position,
             goal,

@@ -24,7 +24,7 @@
 //! pose that has it in sight; if it stays unknown, the stop is [`Stop::Unseen`] and names
 //! it. A voxel into which a step was not followed is *closed*, and poses beyond it are
 //! not those of the claim any more. When nothing else is left the closed ones are opened,
-//! and whatever shows something is tried again, [`ROUNDS`] times and after longer and
+//! and whatever shows something is tried again, `ROUNDS` times and after longer and
 //! longer rests, and anew whenever something was learnt; then the stop is
 //! [`Stop::Blocked`].
 //!
@@ -32,7 +32,7 @@
 //! Let N be the voxels of the box. Voxels become known at most N times and poses done at
 //! most N times: *progress*. Claim: between two of these there are boundedly many steps
 //! with good poses, whatever others say.
-//! 1. *A sensor that shows nothing*: the robot hovers, and after [`SILENCE`] such looks
+//! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
 //!    in a row it stops.
 //! 2. *Searching near* makes a pose done, or gives a way.
 //! 3. *Searching far*: the wave wets each pose once, passes over each pose left to a
@@ -40,10 +40,10 @@
 //! 4. *On the way* each step that is followed uses it up. One that is not closes a
 //!    voxel, at most N in a round.
 //! 5. *At the end of a way* the robot is at its goal and looks: progress. Or the way was
-//!    longer than is remembered, or did not hold. After [`PATIENCE`] steps without
+//!    longer than is remembered, or did not hold. After `PATIENCE` steps without
 //!    progress no rival counts and only the far search decides, for the nearest pose that
 //!    shows something: it gets nearer by a whole way each time, so it is reached.
-//! 6. *Nothing is left*: a round begins, at most [`ROUNDS`] of them without anything
+//! 6. *Nothing is left*: a round begins, at most `ROUNDS` of them without anything
 //!    learnt, or the robot stops, and stays stopped until more is known.
 //!
 //! Steps without a good pose are outside of all counts: nothing is decided in them.

@@ -289,9 +289,9 @@ fn nothing_is_seen_beside_a_narrow_field_of_view() {
     (scenario.fov, scenario.range, scenario.max_ticks) = (62, 3, 1);
     let mut running = run::open(&scenario, None).unwrap();
     running.tick();
-    // To the east, five cells and the own one.
+    // To the east, five cells and the own one; then it turns to what it has not seen.
     let seen = running.robot(0);
-    assert_eq!((seen.heading, seen.known_cells), (Direction::East, 6));
+    assert_eq!((seen.heading, seen.known_cells), (Direction::South, 6));
     assert_eq!(running.outcome().seen_cells, 6);
 }
 

@@ -124,7 +124,8 @@ mod tests {
             all.last().unwrap().text.contains("it had no goal"),
             "{all:?}"
         );
-        assert_eq!(all[0].text, "stops: complete");
+        let edge = "stops: complete within the map, whose edge cuts the world off";
+        assert_eq!(all[0].text, edge);
         assert_eq!(decisions(&watch, 0, 3), all[..3]);
     }
 }

@@ -213,8 +213,8 @@ fn records_that_no_run_leaves_are_refused_with_their_line() {
         &["line 5", "a robot from 0 to 2", "\"3\""],
     );
     says(
-        on(&|it| it.action = 18),
-        &["line 5", "an action, 0 to 17 or 32 to"],
+        on(&|it| it.action = 22),
+        &["line 5", "an action, 0 to 21 or 32 to"],
     );
     says(on(&|it| it.action = 200), &["line 5", "an action", "200"]);
     says(

@@ -114,11 +114,11 @@ mod tests {
             purse.pay(true, 80, EXTENT);
         }
         assert_eq!(ticks_left(&mut purse, 80), 1 + 20 + 2);
-        // Ten looks of eight cells: 400 cells more are worth fifty, a fifth of it ten.
-        assert!(!purse.pay(true, 480, EXTENT) && !purse.is_empty());
-        assert_eq!(ticks_left(&mut purse, 480), 9);
+        // Ten looks of eight cells: 440 cells more are worth 55, a fifth of it 11.
+        assert!(!purse.pay(true, 520, EXTENT) && !purse.is_empty());
+        assert_eq!(ticks_left(&mut purse, 520), 11);
         // Less than half of the capital is not enough.
-        purse.pay(true, 480 + 240, EXTENT);
+        purse.pay(true, 520 + 240, EXTENT);
         assert!(purse.is_empty());
     }
 

@@ -296,9 +296,14 @@ impl<const TH: usize> Link<TH> {
         let frame = self.read(bytes, map.extent());
         let frame = frame.inspect_err(|&error| self.hearsay.refuse(error))?;
         let mut learnt = Learnt::default();
+        let mut last = None;
         for record in &frame.tiles {
-            self.witness
-                .hear(&mut self.hearsay, frame.sender, record, map);
+            // What a frame says twice counts once.
+            if last != Some(record) {
+                self.witness
+                    .hear(&mut self.hearsay, frame.sender, record, map);
+            }
+            last = Some(record);
             learnt += map.join_tile(record.at, record.tile);
             if map.tile_inside(record.at) == record.tile {
                 // The sender knows all of it.

@@ -258,6 +258,23 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
         true
     }
 
+    /// The voxel that the robot is in is free, whatever the map says of it: its own place
+    /// is surer than any look. Cost: 98 words where the map says otherwise.
+    pub fn stand(&mut self, voxel: Voxel) {
+        let (Some(tile), Ok(z)) = (Tile::of(voxel.cell()), u8::try_from(voxel.z)) else {
+            return;
+        };
+        if !self.contains(voxel) || self.content(voxel) != Content::Occupied {
+            return;
+        }
+        let before = self.frontiers_about(tile, z);
+        self.occupied.clear(voxel);
+        self.frontiers = self
+            .frontiers
+            .saturating_add(self.frontiers_about(tile, z))
+            .saturating_sub(before);
+    }
+
     /// Number of frontiers in a tile of a level and the six beside it.
     fn frontiers_about(&self, tile: Tile, z: u8) -> u32 {
         let sides = around(tile).map(|tile| tile.map(|tile| (tile, z)));

@@ -295,10 +295,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
         let sent_to = self.sent_to.take();
         self.looked = true;
-        self.lost = !self.volume.contains(at) || self.volume.content(at) == Content::Occupied;
+        self.lost = !self.volume.contains(at);
         if self.lost {
             return;
         }
+        self.volume.stand(at);
         if let Some(to) = sent_to.filter(|&to| to != at) {
             self.closed.set(to);
             self.is_closed = true;
@@ -432,9 +433,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.peers
             .hear_frame(frame.sender.0, frame.status, frame.sequence);
-        let learnt = self.volume.known_voxels() - before;
-        self.sender.hearsay.told(learnt);
-        Ok(learnt)
+        Ok(self.volume.known_voxels() - before)
     }
 
     /// Takes in a piece of another robot's map; says whether it brought anything.

@@ -203,8 +203,10 @@ proptest! {
                         bytes[..*length.min(&(bytes.len() - 1))].to_vec()
                     }
                 };
-                let before = robot.clone();
+                let mut before = robot.clone();
                 let heard = robot.receive(&bytes);
+                // What was refused is counted.
+                before.sender.hearsay = robot.sender.hearsay;
                 if matches!(lie, Hostile::Corrupted(..) | Hostile::Cut(..)) {
                     prop_assert!(heard.is_err());
                 }
@@ -500,7 +502,7 @@ proptest! {
         length in 1u32..200,
         bad in prop::sample::select(std::vec![
             Voxel::new(-1, 5, 4), Voxel::new(11, 5, 4), Voxel::new(5, 5, 7),
-            Voxel::new(i16::MAX, i16::MIN, 0), Voxel::new(4, 4, 0),
+            Voxel::new(i16::MAX, i16::MIN, 0),
         ]),
     ) {
         let world = World {
@@ -514,12 +516,10 @@ proptest! {
             if (begin..begin + length).contains(&step) && step > 0 {
                 let known = robot.volume().known_voxels();
                 robot.observe(bad, &world.look(Voxel::new(9, 9, 5), step));
-                if bad != Voxel::new(4, 4, 0) || robot.volume().content(bad) == Content::Occupied {
-                    prop_assert_eq!(robot.tick(), Action::Hover);
-                    prop_assert_eq!(robot.waiting(), Some(Wait::Pose));
-                    prop_assert_eq!(robot.volume().known_voxels(), known);
-                    continue;
-                }
+                prop_assert_eq!(robot.tick(), Action::Hover);
+                prop_assert_eq!(robot.waiting(), Some(Wait::Pose));
+                prop_assert_eq!(robot.volume().known_voxels(), known);
+                continue;
             }
             robot.observe(at, &world.look(at, step));
             match robot.tick() {

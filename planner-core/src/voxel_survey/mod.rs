@@ -33,7 +33,7 @@
 //! most N times: *progress*. Claim: between two of these there are boundedly many steps
 //! with good poses, whatever others say.
 //! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
-//!    in a row it stops.
+//!    in a row it stops, as complete if no unknown voxel is beside a free one.
 //! 2. *Searching near* makes a pose done, or gives a way.
 //! 3. *Searching far*: the wave wets each pose once, passes over each pose left to a
 //!    rival once, and begins anew only after progress; the way back gets shorter.
@@ -484,7 +484,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.stopped = false;
         if self.silent >= SILENCE {
-            return self.stop(self.unseen(self.unknown_place()));
+            return self.stop(match self.unknown_place() {
+                Some(at) => self.unseen(at),
+                None => Stop::Complete,
+            });
         }
         if self.silent > 0 {
             return self.hover(Pause::Sight);
@@ -575,18 +578,16 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.first_of(|tile, z| self.missed.word(tile, z) & self.volume.unknown(tile, z))
     }
 
-    /// An unknown voxel: beside the robot, or else the first beside a free one, or else
-    /// the robot's own.
+    /// An unknown voxel: beside the robot, or else the first beside a free one.
     ///
     /// Cost: 14 words for each tile of a level.
-    fn unknown_place(&self) -> Voxel {
+    fn unknown_place(&self) -> Option<Voxel> {
         let is_unknown = |voxel: &Voxel| self.volume.content(*voxel) == Content::Unknown;
         let beside = self.position.beside();
         beside
             .into_iter()
             .find(is_unknown)
             .or_else(|| self.first_of(|tile, z| self.volume.unknown_beside_free(tile, z)))
-            .unwrap_or(self.position)
     }
 
     fn first_of(&self, word: impl Fn(Tile, u8) -> u64) -> Option<Voxel> {

@@ -18,10 +18,17 @@ use crate::robot::memory;
 /// Tiles along a side of the map: 104×104 columns.
 const TILES: usize = 13;
 
-// Every planner that the image can host has its place; one of them is used.
-static FCAO: ConstStaticCell<Fcao<TILES, TILES>> = ConstStaticCell::new(Fcao::vacant());
-static COORDINATED: ConstStaticCell<CoordinatedSurvey<TILES, TILES>> =
-    ConstStaticCell::new(CoordinatedSurvey::vacant());
+/// The planners that the image can host. One of them is used, so they share a place: side
+/// by side they do not fit in the RAM of the chip.
+#[expect(clippy::large_enum_variant, reason = "there is one, in a static")]
+enum Hosted {
+    Coordinated(CoordinatedSurvey<TILES, TILES>),
+    Fcao(Fcao<TILES, TILES>),
+}
+
+/// All zero, so in `.bss`.
+static HOSTED: ConstStaticCell<Hosted> =
+    ConstStaticCell::new(Hosted::Coordinated(CoordinatedSurvey::vacant()));
 
 /// Columns on their way into the planner.
 static SEEN: ConstStaticCell<Seen> = ConstStaticCell::new(Seen::new());
@@ -66,18 +73,22 @@ fn prepare(
     id: u8,
     extent: Extent,
 ) -> Result<(&'static mut Robot, usize), SetupError> {
-    Ok(match planner {
-        SurveyorConfig::Fcao(config) => {
-            let planner = FCAO.take();
+    let hosted = HOSTED.take();
+    if let SurveyorConfig::Fcao(_) = planner {
+        // Written in place: the stack has no room for a planner.
+        *hosted = Hosted::Fcao(Fcao::vacant());
+    }
+    match (hosted, planner) {
+        (Hosted::Fcao(planner), SurveyorConfig::Fcao(config)) => {
             planner.reset(extent, config, id)?;
-            (planner, size_of::<Fcao<TILES, TILES>>())
+            Ok((planner, size_of::<Fcao<TILES, TILES>>()))
         }
-        SurveyorConfig::Coordinated(config) => {
-            let planner = COORDINATED.take();
+        (Hosted::Coordinated(planner), SurveyorConfig::Coordinated(config)) => {
             planner.reset(extent, config, id)?;
-            (planner, size_of::<CoordinatedSurvey<TILES, TILES>>())
+            Ok((planner, size_of::<CoordinatedSurvey<TILES, TILES>>()))
         }
-    })
+        _ => unreachable!("it was put there just now"),
+    }
 }
 
 /// Does what is asked for, and says what the planner's call took.

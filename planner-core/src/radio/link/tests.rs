@@ -149,7 +149,9 @@ fn a_number_far_ahead_is_no_news_and_silences_nobody() {
         };
         let (mut sender, mut receiver) = (link(1, config), link(2, config));
         assert!(is_news(&mut receiver, &mut sender));
-        for ticks in [1, 10, 100, 255] {
+        // Miri is a thousand times slower.
+        let silences: &[u16] = if cfg!(miri) { &[1] } else { &[1, 10, 100, 255] };
+        for &ticks in silences {
             let mut sent = 0u32;
             for _ in 0..ticks {
                 receiver.tick();

@@ -7,7 +7,8 @@
 //! round, by twice as many in each further one; then all cells are tried again. The last
 //! round that [`Config::patience`](super::Config::patience) allows has no end by time:
 //! every way that is left is tried in it, however many cells refuse, before the robot
-//! gives up.
+//! gives up. Robots walk away: where only they refuse, a round is the last one if the
+//! patience has been used up by such rounds alone.
 //!
 //! Which of the two a cell is, the map tells: only a robot that stood on a cell can have
 //! looked from it, so a visited frontier cell is one that shows nothing. Where such a
@@ -48,6 +49,8 @@ pub(crate) struct Aside<const TW: usize, const TH: usize> {
     /// The tick in which the round ends.
     until: u32,
     round: u8,
+    /// Rounds in which only robots refused.
+    held: u8,
     has_refused: bool,
     /// Whether something other than a robot refused.
     is_blocked: bool,
@@ -67,6 +70,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
             unseen_at: Cell::new(0, 0),
             until: 0,
             round: 0,
+            held: 0,
             has_refused: false,
             is_blocked: false,
             unseen: 0,
@@ -79,6 +83,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     pub(crate) fn reset(&mut self) {
         self.begin_round();
         self.round = 0;
+        self.held = 0;
     }
 
     fn begin_round(&mut self) {
@@ -97,22 +102,25 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     pub(crate) fn tick(&mut self, patience: u8, now: u32) -> bool {
         let is_over = self.has_refused && !self.is_last_round(patience) && now >= self.until;
         if is_over {
-            self.next_round(now);
+            self.next_round(patience, now);
         }
         is_over
     }
 
     /// Begins a new round. Work: a word a tile.
-    pub(crate) fn next_round(&mut self, now: u32) {
+    pub(crate) fn next_round(&mut self, patience: u8, now: u32) {
         // Cells that were not waited for are none the surer for it.
         if self.has_refused && now >= self.until {
-            self.round = self.round.saturating_add(1);
+            let last = patience.saturating_sub(1);
+            self.round = self.round.saturating_add(1).min(last);
+            self.held = self.held.saturating_add(u8::from(!self.is_blocked));
         }
         self.begin_round();
     }
 
     const fn is_last_round(&self, patience: u8) -> bool {
-        self.round.saturating_add(1) >= patience
+        let is_sure = self.is_blocked || self.held.saturating_add(1) >= patience;
+        is_sure && self.round.saturating_add(1) >= patience
     }
 
     /// A cell could not be entered.
@@ -153,6 +161,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     /// The robot learnt something: what refused is tried again soon.
     pub(crate) fn renew(&mut self) {
         self.round = self.round.min(1);
+        self.held = self.held.min(1);
         self.has_learnt = true;
     }
 
@@ -268,6 +277,28 @@ mod tests {
     }
 
     #[test]
+    fn robots_have_a_patience_of_their_own() {
+        let door = Cell::new(3, 3);
+        let mut aside = Small::new();
+        let mut now = 0;
+        let mut refuse = |aside: &mut Small, by_robot| {
+            now += 1000;
+            aside.refuse(door, by_robot, now);
+            (
+                aside.verdict(PATIENCE, 30, now),
+                aside.tick(PATIENCE, now + 100),
+            )
+        };
+        for _ in 1..PATIENCE {
+            assert_eq!(refuse(&mut aside, false), (Verdict::Wait, true));
+        }
+        for _ in 1..PATIENCE {
+            assert_eq!(refuse(&mut aside, true), (Verdict::Wait, true));
+        }
+        assert_eq!(refuse(&mut aside, true), (Verdict::Held(door), false));
+    }
+
+    #[test]
     fn what_shows_nothing_is_no_goal_but_a_way() {
         let mut map = Map::<3, 3>::new(Extent::new(24, 24)).unwrap();
         let frontier = Cell::new(5, 5);
@@ -287,7 +318,7 @@ mod tests {
         assert_eq!(aside.verdict(8, 1, 0), Verdict::Unseen(Cell::new(6, 5)));
         aside.refuse(frontier, false, 0);
         assert_eq!(aside.closed(at, &map), bit | other);
-        aside.next_round(9);
+        aside.next_round(8, 9);
         assert_eq!(
             (aside.cells(at), aside.verdict(8, 30, 9)),
             (0, Verdict::Nothing)
@@ -300,7 +331,7 @@ mod tests {
         aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
         aside.renew();
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Again);
-        aside.next_round(9);
+        aside.next_round(8, 9);
         aside.show_nothing(Cell::new(5, 5), Cell::new(6, 5));
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
     }

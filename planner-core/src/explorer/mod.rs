@@ -27,8 +27,8 @@
 //! shown that in each the robot stops or learns after a bounded number of ticks. Take, in
 //! lexicographic order:
 //!
-//! 1. rounds left (`aside`). A round ends by time or when nothing else is left, and its
-//!    number falls only when something is learnt;
+//! 1. rounds left (`aside`), twice the patience at most. A round ends by time or when
+//!    nothing else is left, and its number falls only when something is learnt;
 //! 2. cells not set aside in this round: each refusal and each look that was in vain
 //!    lowers it, and only the next round raises it;
 //! 3. changes left: the tokens, and one more for a plan that was made before the spell
@@ -72,8 +72,8 @@
 //! near ones are another's: each case above holds whatever they are.
 //!
 //! Let D be the longest way on the map, F the ticks of a far search, N the cells, p the
-//! patience: a spell has at most p·N·(tokens + 2)·(D + F + 4·looks + holds) ticks, and
-//! 4·2ᵖ of waiting.
+//! patience: a spell has at most 2p·N·(tokens + 2)·(D + F + 4·looks + holds) ticks, and
+//! 4·(p + 1)·2ᵖ of waiting.
 //!
 //! # Why its reason is true
 //! The robot's last wave covered every cell that free cells connect with it. If nothing was
@@ -85,9 +85,9 @@
 //! Where robots may not share a cell, roles walk and bodies stay ([`exchange`]): the
 //! lowest role that is active is never pushed back and never waits, so it stops; then the
 //! next one is the lowest. Where looks show nothing or cells refuse, bodies have set aside
-//! different cells, and a role may find its plan worthless in every next one: it asks for
-//! 2,048 exchanges in a spell at most. Then bodies are obstacles to it, and each robot
-//! stops as shown above, with a reason that names the one in its way.
+//! different cells, and a role may find its plan worthless in the next one. After four
+//! plans lost so, bodies are obstacles to it until a round ends or it learns something,
+//! and each robot stops as shown above, with a reason that names the one in its way.
 
 mod aside;
 mod far;
@@ -333,7 +333,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn learn(&mut self, learnt: Learnt) {
         if learnt.anything() {
             self.role.used = 0;
-            self.role.exchanges = 0;
+            self.role.lost = 0;
             self.looks = 0;
             self.far_is_doubtful = true;
             self.around.aside.renew();
@@ -377,6 +377,16 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             && self.around.is_goal(plan.goal)
             && self.around.is_open(plan.goal)
             && (plan.path.is_empty() || self.next_step().is_some())
+    }
+
+    /// Drops the plan. If it led to no frontier that is worth a look, it was made in
+    /// another body, which had set other cells aside (or something was learnt since).
+    fn lose_plan(&mut self) {
+        let here = self.around.position;
+        let plan = self.role.plan.take();
+        if plan.is_some_and(|plan| plan.goal != here || !self.around.is_goal(here)) {
+            self.role.lost = self.role.lost.saturating_add(1);
+        }
     }
 
     /// Decides among the frontiers nearby, and which far search is to run if none of
@@ -488,7 +498,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 None
             }
             Verdict::Again => {
-                self.around.aside.next_round(now);
+                self.around.aside.next_round(self.config.patience, now);
+                self.role.lost = 0;
                 None
             }
         }
@@ -599,9 +610,12 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.far.cancel();
         }
         let now = self.around.now;
-        self.far_is_doubtful |= self.around.aside.tick(self.config.patience, now);
+        if self.around.aside.tick(self.config.patience, now) {
+            self.far_is_doubtful = true;
+            self.role.lost = 0;
+        }
         if !self.has_plan() {
-            self.role.plan = None;
+            self.lose_plan();
         }
         if let Some(direction) = self.look() {
             return self.wait(Wait::Look(direction));
@@ -631,7 +645,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                     // A plan whose rest cannot be found is none.
                     let plan = self.role.plan.as_ref();
                     if plan.is_some_and(|plan| plan.path.is_empty()) {
-                        self.role.plan = None;
+                        self.lose_plan();
                     }
                 }
             }
@@ -656,7 +670,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.role.stopped = Maybe::Nothing;
         self.role.plan = None;
         self.role.used = 0;
-        self.role.exchanges = 0;
+        self.role.lost = 0;
         self.around.aside.reset();
         self.looks = 0;
         self.holds = 0;

@@ -20,10 +20,10 @@ pub(crate) struct Plan {
     pub(crate) path: Path,
 }
 
-/// Exchanges that a role asks for between two things that it learns; then bodies in its
-/// way count as obstacles. Bodies set cells aside each for itself, so that without a limit
-/// they could send roles round and round between them.
-const MOST_EXCHANGES: u16 = 2048;
+/// Plans that a role may lose by exchanges; then bodies in its way count as obstacles,
+/// until it learns something or a round of [`Aside`](super::aside::Aside) ends. Bodies set
+/// cells aside each for itself: without a limit they could send roles round and round.
+const MOST_LOST: u8 = 4;
 
 /// What a robot is about to do. Robot `k` starts with role `k`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,8 +35,8 @@ pub struct Role {
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
     pub(crate) used: u8,
-    /// Exchanges that it asked for since it last learnt anything.
-    pub(crate) exchanges: u16,
+    /// Plans that were worthless in the body that it got by an exchange, see [`exchange`].
+    pub(crate) lost: u8,
     /// Whether it has reached its goal and has not decided since.
     pub(crate) has_arrived: bool,
     pub(crate) stopped: Maybe<Stop>,
@@ -49,7 +49,7 @@ impl Role {
             plan: None,
             since: 0,
             used: 0,
-            exchanges: 0,
+            lost: 0,
             has_arrived: false,
             stopped: Maybe::Nothing,
         }
@@ -103,7 +103,10 @@ impl Role {
 
     fn is_pushed_back(&mut self, from: Cell, to: Cell) {
         if let (Some(plan), Some(way_back)) = (&mut self.plan, to.direction_to(from)) {
-            plan.path.push_front(way_back);
+            // A way that is used up stays so: its rest is being searched for.
+            if !plan.path.is_empty() {
+                plan.path.push_front(way_back);
+            }
             plan.remaining = plan.remaining.saturating_add(1);
         }
     }
@@ -116,13 +119,13 @@ impl Role {
 /// 1. The other has just reached its goal: wait, so that it can look from there.
 /// 2. Head-on: exchange, both have made their step.
 /// 3. The other is passive, or gives way: exchange; it gets its cell put in front
-///    of its path.
-/// 4. Else wait: no new plan, nothing is used up. So too if `mine` has asked for 2,048
-///    exchanges since it last learnt anything.
+///    of its path, unless that is used up and the rest is being searched for.
+/// 4. Else wait: no new plan, nothing is used up. So too if `mine` has lost four plans,
+///    since it last learnt anything, to bodies that had set aside what they led to.
 ///
 /// The bodies then join each other's maps, and neither role acts again in this tick.
 pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
-    if theirs.has_arrived || mine.exchanges >= MOST_EXCHANGES {
+    if theirs.has_arrived || mine.lost >= MOST_LOST {
         return None;
     }
     let (mut mine, mut theirs) = (*mine, *theirs);
@@ -136,6 +139,54 @@ pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(
         return None;
     }
     mine.make_step();
-    mine.exchanges += 1;
     Some((theirs, mine))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A role with a plan of ten steps, the first of them eastward.
+    fn role(rank: u8, first: usize) -> Role {
+        let mut path = Path::new();
+        for _ in 0..first {
+            path.push_front(Direction::East);
+        }
+        Role {
+            plan: Some(Plan {
+                goal: Cell::new(20, 1),
+                remaining: 10,
+                path,
+            }),
+            ..Role::new(RobotId(rank))
+        }
+    }
+
+    const HERE: Cell = Cell::new(4, 1);
+    const THERE: Cell = Cell::new(5, 1);
+
+    #[test]
+    fn a_role_that_gives_way_gets_its_cell_back() {
+        let (theirs, mine) = exchange(&role(0, 3), HERE, &role(1, 3), THERE).unwrap();
+        assert_eq!((mine.remaining(), mine.way().count()), (9, 2));
+        assert_eq!((theirs.remaining(), theirs.way().count()), (11, 4));
+        assert_eq!(exchange(&role(1, 3), HERE, &role(0, 3), THERE), None);
+    }
+
+    #[test]
+    fn a_way_that_is_used_up_stays_so() {
+        // With one step back, two such roles would push each other to and fro for ever.
+        let (theirs, _) = exchange(&role(1, 3), HERE, &role(0, 0), THERE).unwrap();
+        assert_eq!((theirs.remaining(), theirs.way().count()), (11, 0));
+    }
+
+    #[test]
+    fn a_role_that_lost_its_plans_waits() {
+        let mut mine = role(0, 3);
+        mine.lost = MOST_LOST;
+        assert_eq!(exchange(&mine, HERE, &role(1, 3), THERE), None);
+        assert!(exchange(&role(1, 3), HERE, &mine, THERE).is_none());
+        mine.stopped = Maybe::Just(Stop::Complete);
+        assert!(exchange(&role(1, 3), HERE, &mine, THERE).is_some());
+    }
 }

@@ -1,5 +1,6 @@
 //! The explorer in a small world of its own: the obviously correct simulator.
 
+use std::collections::HashMap;
 use std::vec;
 use std::vec::Vec;
 
@@ -133,12 +134,15 @@ impl Scene {
     fn look(&self, from: Cell, heading: Direction) -> Sighting {
         let all = look(from, self.radius, |cell| self.is_blocked(cell));
         let is_in_view = |cell: &Cell| {
+            if self.trouble.view == 0 {
+                return true;
+            }
             let (x, y) = heading.delta();
             let (dx, dy) = (f64::from(cell.x - from.x), f64::from(cell.y - from.y));
             let along = dx * f64::from(x) + dy * f64::from(y);
             let across = dx * f64::from(y) - dy * f64::from(x);
             let angle = across.atan2(along).abs().to_degrees();
-            self.trouble.view == 0 || angle <= f64::from(self.trouble.view) / 2.0
+            angle <= f64::from(self.trouble.view) / 2.0
         };
         let shows = |cell: &Cell| is_in_view(cell) && !self.is_silent(*cell);
         let mut sighting = Sighting::new(from);
@@ -320,6 +324,7 @@ fn run(scene: &Scene, limit: u32) -> Ended {
         }
         all
     };
+    let mut looks = HashMap::new();
     let mut ticks = 0;
     while stops.iter().any(Option::is_none) && ticks < limit {
         let ticks_now = ticks;
@@ -332,7 +337,11 @@ fn run(scene: &Scene, limit: u32) -> Ended {
             if is_astray(i) {
                 robot.observe(&Sighting::new(Cell::new(-7, 300)));
             } else {
-                robot.observe(&scene.look(at[i], heading[i]));
+                let (place, side) = (at[i], heading[i]);
+                let look = looks
+                    .entry((place.x, place.y, side as u8))
+                    .or_insert_with(|| scene.look(place, side));
+                robot.observe(look);
             }
             for ghost in &scene.trouble.ghosts {
                 if ticks < ghost.silence && usize::from(ghost.id) != i {

@@ -20,7 +20,6 @@ const TILES: usize = 13;
 
 /// The planners that the image can host. One of them is used, so they share a place: side
 /// by side they do not fit in the RAM of the chip.
-#[expect(clippy::large_enum_variant, reason = "there is one, in a static")]
 enum Hosted {
     Coordinated(CoordinatedSurvey<TILES, TILES>),
     Fcao(Fcao<TILES, TILES>),

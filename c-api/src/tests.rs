@@ -88,8 +88,8 @@ fn misaligned_is_answered() {
     let ready = created(&mut memory, CONFIG);
     // Large enough and aligned for anything, and then one byte further.
     let mut place = [0u64; 8];
-    let crooked = place.as_mut_ptr().wrapping_byte_add(1);
     let straight = place.as_mut_ptr();
+    let crooked = straight.wrapping_byte_add(1);
     let pose = PlannerPose {
         x: 1.5,
         y: 1.5,
@@ -110,8 +110,9 @@ fn misaligned_is_answered() {
     }
     // Frames are bytes: they lie anywhere.
     let frame = crooked.cast::<u8>();
+    let mut length = 0;
     assert_eq!(
-        planner_transmit(ready, frame, straight.cast()),
+        planner_transmit(ready, frame, &mut length),
         PlannerResult::Ok
     );
 }

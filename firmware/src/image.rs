@@ -6,6 +6,7 @@ use cortex_m_rt::entry;
 use cortex_m_semihosting::hio;
 use firmware::{Ending, Exploration, World, end, explore, stack};
 use planner_core::explorer::{Config, Explorer};
+use planner_core::map::ExtentError;
 use planner_core::{Planner, RobotId};
 use static_cell::ConstStaticCell;
 
@@ -32,11 +33,13 @@ fn main() -> ! {
 
 fn run() -> Result<Ending, fmt::Error> {
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
-    let robot = ROBOT.take();
-    if let Err(error) = robot.reset(Config::new(), RobotId(0), WORLD.extent(), WORLD.start()) {
-        writeln!(out, "error: {error}")?;
-        return Ok(Ending::Failure);
-    }
+    let robot = match prepare() {
+        Ok(robot) => robot,
+        Err(error) => {
+            writeln!(out, "error: {error}")?;
+            return Ok(Ending::Failure);
+        }
+    };
     let exploration = explore(robot, &WORLD, RANGE);
     report(&mut out, robot, &exploration)?;
     Ok(match exploration.stop {
@@ -45,7 +48,17 @@ fn run() -> Result<Ending, fmt::Error> {
     })
 }
 
-/// Prints the map, then one `key: value` a line: `cargo xtask` reads them.
+/// Sets the planner up. A function of its own, as [`report`] is.
+#[inline(never)]
+fn prepare() -> Result<&'static mut Robot, ExtentError> {
+    let robot = ROBOT.take();
+    robot.reset(Config::new(), RobotId(0), WORLD.extent(), WORLD.start())?;
+    Ok(robot)
+}
+
+/// Prints the map, then one `key: value` a line: `cargo xtask` reads them. A function of
+/// its own: its buffers are not on the stack while the robot explores.
+#[inline(never)]
 fn report(out: &mut impl fmt::Write, robot: &Robot, exploration: &Exploration) -> fmt::Result {
     let &Exploration {
         ticks,

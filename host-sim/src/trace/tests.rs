@@ -240,7 +240,7 @@ fn records_that_no_run_leaves_are_refused_with_their_line() {
     let out = message(|trace| {
         let start = Cell::new(0, 3);
         trace.scenario.world =
-            Arc::new(World::from_fn("open", Extent::new(9, 9), |_| false).unwrap());
+            Arc::new(World::from_fn("open", Extent::new(10, 10), |_| false).unwrap());
         trace.scenario.starts = vec![start; 3];
         trace.records.truncate(1);
         trace.records[0].at = start;

@@ -383,10 +383,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// another body, which had set other cells aside (or something was learnt since).
     fn lose_plan(&mut self) {
         let here = self.around.position;
-        let plan = self.role.plan.take();
-        if plan.is_some_and(|plan| plan.goal != here || !self.around.is_goal(here)) {
+        let goal = self.role.goal();
+        if goal.is_some_and(|goal| goal != here || !self.around.is_goal(here)) {
             self.role.lost = self.role.lost.saturating_add(1);
         }
+        self.role.plan = None;
     }
 
     /// Decides among the frontiers nearby, and which far search is to run if none of

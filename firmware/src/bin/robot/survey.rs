@@ -25,6 +25,9 @@ enum Hosted {
     Fcao(Fcao<TILES, TILES>),
 }
 
+/// From here the other planner is copied: the stack has no room for one.
+const FCAO: Hosted = Hosted::Fcao(Fcao::vacant());
+
 /// All zero, so in `.bss`.
 static HOSTED: ConstStaticCell<Hosted> =
     ConstStaticCell::new(Hosted::Coordinated(CoordinatedSurvey::vacant()));
@@ -74,8 +77,7 @@ fn prepare(
 ) -> Result<(&'static mut Robot, usize), SetupError> {
     let hosted = HOSTED.take();
     if let SurveyorConfig::Fcao(_) = planner {
-        // Written in place: the stack has no room for a planner.
-        *hosted = Hosted::Fcao(Fcao::vacant());
+        *hosted = FCAO;
     }
     match (hosted, planner) {
         (Hosted::Fcao(planner), SurveyorConfig::Fcao(config)) => {

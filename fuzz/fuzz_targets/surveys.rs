@@ -211,6 +211,7 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         visible: 0,
         seen: Vec::new(),
         all_stopped: false,
+        stops: vec![None; robots],
         violations: 0,
     }
 }

@@ -83,7 +83,7 @@ enum Task {
     },
     /// Builds the image and runs it in QEMU (an emulated STM32F405).
     RunFirmware,
-    /// Fuzzes the radio: each target for so many seconds.
+    /// Fuzzes radio, robot and readers of files: each target for so many seconds.
     Fuzz {
         /// For how long, each.
         #[arg(long, value_name = "N", default_value_t = 600)]

@@ -13,6 +13,7 @@
 #[cfg(unix)]
 pub mod chip;
 mod coverage;
+mod dice;
 pub mod draw;
 mod excerpt;
 #[cfg(not(target_arch = "wasm32"))]

@@ -3,11 +3,10 @@
 use std::sync::Arc;
 
 use planner_core::{Cell, RobotId, sight};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
 use super::{Fate, Forger, Message};
+use crate::dice::Dice;
 use crate::world::World;
 
 /// What goes wrong in the air besides plain loss. None of it by default.
@@ -61,7 +60,7 @@ pub(super) struct Air {
     /// Share of messages lost, for each pair of robots by itself.
     loss: f64,
     world: Arc<World>,
-    chance: ChaCha8Rng,
+    dice: Dice,
     /// The messages of this tick, if anybody asks for them.
     messages: Option<Vec<Message>>,
 }
@@ -72,7 +71,7 @@ impl Air {
             faults,
             loss,
             world,
-            chance: ChaCha8Rng::seed_from_u64(seed),
+            dice: Dice::new(seed),
             messages: None,
         }
     }
@@ -89,7 +88,7 @@ impl Air {
                 && (from.0.0 < partition.border) != (to.0.0 < partition.border)
         };
         let reaches = !self.faults.partitions.iter().any(is_cut) && self.reaches(from.1, to.1);
-        let arrives = reaches && !self.strikes(self.loss);
+        let arrives = reaches && !self.dice.happens(self.loss);
         match (reaches, arrives) {
             (_, true) => {}
             (true, false) => self.note(from.0, to.0, Fate::Lost),
@@ -122,15 +121,15 @@ impl Air {
 
     /// The copies of a frame that a robot receives, and how many ticks late.
     pub(super) fn copies(&mut self, frame: &[u8]) -> Vec<(u32, Vec<u8>)> {
-        let copies = 1 + usize::from(self.strikes(self.faults.duplication));
+        let copies = 1 + usize::from(self.dice.happens(self.faults.duplication));
         (0..copies)
             .map(|_| {
                 let late = match self.faults.delay {
                     0 => 0,
-                    most => self.below(most.saturating_add(1)),
+                    most => self.dice.below(most.saturating_add(1)),
                 };
                 let mut bytes = frame.to_vec();
-                if self.strikes(self.faults.corruption) {
+                if self.dice.happens(self.faults.corruption) {
                     self.corrupt(&mut bytes);
                 }
                 (late, bytes)
@@ -149,23 +148,13 @@ impl Air {
     /// One to eight wrong bits, or an end that is missing.
     fn corrupt(&mut self, bytes: &mut Vec<u8>) {
         let length = bytes.len() as u32;
-        if self.below(8) == 0 {
-            bytes.truncate(self.below(length) as usize);
+        if self.dice.below(8) == 0 {
+            bytes.truncate(self.dice.below(length) as usize);
             return;
         }
-        for _ in 0..=self.below(8) {
-            let bit = self.below(8 * length);
+        for _ in 0..=self.dice.below(8) {
+            let bit = self.dice.below(8 * length);
             bytes[bit as usize / 8] ^= 1 << (bit % 8);
         }
-    }
-
-    /// True for the given share of calls. Draws nothing for a share of 0.
-    fn strikes(&mut self, share: f64) -> bool {
-        let below = (share.clamp(0.0, 1.0) * 2f64.powi(32)) as u64;
-        below > 0 && u64::from(self.chance.next_u32()) < below
-    }
-
-    fn below(&mut self, n: u32) -> u32 {
-        ((u64::from(self.chance.next_u32()) * u64::from(n)) >> 32) as u32
     }
 }

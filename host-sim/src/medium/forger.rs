@@ -8,10 +8,9 @@ use clap::ValueEnum;
 use planner_core::map::{Tile, TileIndex};
 use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::{Activity, Cell, Extent, Map, RobotId, Status};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
 
+use crate::dice::Dice;
 use crate::fleet::Robot;
 
 /// What a forger does, and how much of it.
@@ -98,20 +97,20 @@ impl FromStr for Forger {
 pub(super) struct Desk {
     forger: Forger,
     sequence: u16,
-    chance: ChaCha8Rng,
+    dice: Dice,
     /// He has no key of the fleet, so he tries one.
     key: Key,
 }
 
 impl Desk {
     pub(super) fn new(forger: Forger, seed: u64) -> Self {
-        let mut chance = ChaCha8Rng::seed_from_u64(seed ^ 0x666f_7267_6572);
+        let mut dice = Dice::new(seed ^ 0x666f_7267_6572);
         let mut key = [0; 16];
-        chance.fill_bytes(&mut key);
+        dice.fill(&mut key);
         Self {
             forger,
             sequence: 0,
-            chance,
+            dice,
             key: Key(key),
         }
     }
@@ -204,24 +203,24 @@ impl Desk {
     fn drawn(&mut self, extent: Extent, with_tiles: bool) -> Frame {
         let status = Status {
             position: self.cell(extent),
-            goal: (self.below(2) == 0).then(|| self.cell(extent)),
-            activity: match self.below(8) {
+            goal: (self.dice.below(2) == 0).then(|| self.cell(extent)),
+            activity: match self.dice.below(8) {
                 0 => Activity::Stopped,
                 _ => Activity::Exploring,
             },
         };
-        let tiles = if with_tiles { self.below(3) } else { 0 };
+        let tiles = if with_tiles { self.dice.below(3) } else { 0 };
         Frame {
             grid: grid(extent),
-            sender: RobotId(self.below(256) as u8),
-            sequence: self.below(1 << 16) as u16,
+            sender: RobotId(self.dice.below(256) as u8),
+            sequence: self.dice.below(1 << 16) as u16,
             status,
             tiles: (0..tiles).map(|_| self.tile(extent)).collect(),
         }
     }
 
     fn cell(&mut self, extent: Extent) -> Cell {
-        let mut below = |cells: u16| self.below(cells.into()) as i16;
+        let mut below = |cells: u16| self.dice.below(cells.into()) as i16;
         Cell::new(below(extent.width), below(extent.height))
     }
 
@@ -231,21 +230,17 @@ impl Desk {
             .filter(|&bit| extent.contains(at.cell(bit)))
             .fold(0, |mask, bit| mask | 1 << bit);
         // Few cells, or whole tiles of them.
-        let few = self.chance.next_u64() & self.chance.next_u64() & self.chance.next_u64();
-        let known = inside & if self.below(4) == 0 { !0 } else { few };
-        let obstacle = known & self.chance.next_u64();
+        let few = self.dice.bits() & self.dice.bits() & self.dice.bits();
+        let known = inside & if self.dice.below(4) == 0 { !0 } else { few };
+        let obstacle = known & self.dice.bits();
         TileRecord {
             at,
             tile: Tile {
                 known,
                 obstacle,
-                visited: known & !obstacle & self.chance.next_u64(),
+                visited: known & !obstacle & self.dice.bits(),
             },
         }
-    }
-
-    fn below(&mut self, n: u32) -> u32 {
-        ((u64::from(self.chance.next_u32()) * u64::from(n)) >> 32) as u32
     }
 }
 

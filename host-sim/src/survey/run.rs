@@ -11,8 +11,6 @@ use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Action, Limits, Motion, SetupError, Status, Surveyor};
 use planner_core::{Extent, Point, RobotId};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::baselines::{Follower, Guide, Rounds, assign};
 use super::error::SurveyError;
@@ -20,6 +18,7 @@ use super::scenario::{Planner, Scenario};
 use super::sensor::look;
 use super::terrain::Terrain;
 use super::trace::{Deed, Record, Safety, Trace};
+use crate::dice::Dice;
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
 
@@ -155,7 +154,7 @@ struct Simulation<const T: usize> {
     robots: Vec<Robot<T>>,
     /// What anybody has seen.
     union: Box<Surface<T, T>>,
-    faults: ChaCha8Rng,
+    dice: Dice,
     now: u32,
     trace: Trace,
 }
@@ -204,7 +203,7 @@ impl<const T: usize> Simulation<T> {
             scenario: scenario.clone(),
             robots,
             union: Box::new(Surface::new(extent).map_err(SetupError::from)?),
-            faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+            dice: Dice::new(scenario.seed),
             now: 0,
         })
     }
@@ -219,7 +218,7 @@ impl<const T: usize> Simulation<T> {
             }
         }
         for i in 0..self.robots.len() {
-            self.robots[i].awake = self.robots[i].alive && !self.happens(self.scenario.skip);
+            self.robots[i].awake = self.robots[i].alive && !self.dice.happens(self.scenario.skip);
         }
         self.sense();
         self.share();
@@ -282,7 +281,7 @@ impl<const T: usize> Simulation<T> {
             self.robots[i].sent.frames += 1;
             self.robots[i].sent.bytes += length as u32;
             for to in (0..self.robots.len()).filter(|&to| to != i) {
-                if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
                     let heard = self.robots[to].pilot.get_mut().receive(&frame[..length]);
                     heard.expect("robots understand each other");
                 }
@@ -307,7 +306,7 @@ impl<const T: usize> Simulation<T> {
                 continue;
             };
             for to in (0..self.robots.len()).filter(|&to| to != from) {
-                if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
                     let pilot = self.robots[to].pilot.get_mut();
                     pilot.hear(from as u8, *status);
                     for patch in patches {
@@ -372,7 +371,7 @@ impl<const T: usize> Simulation<T> {
             MediumKind::Radio => self.transmit(i, 1),
             MediumKind::Ideal => {
                 for to in (0..self.robots.len()).filter(|&to| to != i) {
-                    if self.robots[to].awake && !self.happens(self.scenario.loss) {
+                    if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
                         self.robots[to].pilot.get_mut().hear(i as u8, status);
                     }
                 }
@@ -411,10 +410,6 @@ impl<const T: usize> Simulation<T> {
         self.trace
             .safety
             .check_separation(&self.scenario.limits, &alive);
-    }
-
-    fn happens(&mut self, probability: f64) -> bool {
-        probability > 0.0 && f64::from(self.faults.next_u32()) / f64::from(u32::MAX) < probability
     }
 }
 

@@ -2,8 +2,8 @@
 
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::dice::Dice;
 
 /// A height field; heights in cells.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,8 +40,8 @@ impl Terrain {
     /// Eight Gaussian hills of equal width σ = 0.1·`side` and peaks of 4 to 14 cells
     /// at places drawn by `seed` [Renzaglia2019 §5].
     pub fn gaussian(seed: u64, side: u16) -> Self {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let mut unit = || f64::from(rng.next_u32()) / f64::from(u32::MAX);
+        let mut dice = Dice::new(seed);
+        let mut unit = || dice.unit();
         let hills: [(f64, f64, f64); 8] = std::array::from_fn(|_| {
             (
                 unit() * f64::from(side),
@@ -69,26 +69,26 @@ impl Terrain {
         /// Width of a block with its street, and of the street.
         const BLOCK: i16 = 20;
         const STREET: i16 = 8;
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut dice = Dice::new(seed);
         let blocks = side as usize / BLOCK as usize + 1;
         let buildings: Vec<u8> = (0..blocks * blocks)
             .map(|_| {
-                if rng.next_u32() % 5 == 0 {
+                if dice.residue(5) == 0 {
                     0
                 } else {
-                    20 + (rng.next_u32() % 45) as u8
+                    20 + dice.residue(45) as u8
                 }
             })
             .collect();
         // North-west corner and size of each vehicle, parked along a kerb.
         let vehicles: Vec<(i16, i16, i16, i16)> = (0..blocks * blocks)
             .map(|block| {
-                let along = STREET + (rng.next_u32() % 8) as i16;
+                let along = STREET + dice.residue(8) as i16;
                 let (x, y) = (
                     (block % blocks) as i16 * BLOCK,
                     (block / blocks) as i16 * BLOCK,
                 );
-                if rng.next_u32() % 2 == 0 {
+                if dice.residue(2) == 0 {
                     (x + 5, y + along, 2, 4)
                 } else {
                     (x + along, y + 5, 4, 2)

@@ -5,7 +5,6 @@
 //! ([`World::from_fn`]). It has at least one free cell and fits the largest
 //! compiled map, [`LARGEST`]; whatever breaks that is a [`WorldError`].
 
-mod dice;
 mod error;
 pub(crate) mod foreign;
 mod generate;

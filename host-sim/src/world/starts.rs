@@ -3,8 +3,8 @@
 use planner_core::Cell;
 
 use super::World;
-use super::dice::Dice;
 use super::error::{Problem, WorldError};
+use crate::dice::Dice;
 
 /// How the robots' first cells are chosen.
 ///

@@ -7,10 +7,9 @@ use planner_core::surface::Tile;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Point, Stop};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::scene::{LARGEST, LEVELS, Scene};
+use crate::dice::Dice;
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
 use crate::survey::DEFAULT_BYTE_BUDGET;
@@ -215,7 +214,7 @@ impl Simulation {
             trace,
             medium: Medium {
                 loss: scenario.loss,
-                faults: ChaCha8Rng::seed_from_u64(scenario.seed),
+                dice: Dice::new(scenario.seed),
                 turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
             },
             visible,
@@ -314,14 +313,14 @@ impl Simulation {
 /// What carries what robots tell each other.
 struct Medium {
     loss: f64,
-    faults: ChaCha8Rng,
+    dice: Dice,
     /// Where each robot stands that tells its map word by word.
     turns: Vec<(Tile, u8)>,
 }
 
 impl Medium {
     fn arrives(&mut self) -> bool {
-        self.loss <= 0.0 || f64::from(self.faults.next_u32()) / f64::from(u32::MAX) >= self.loss
+        !self.dice.happens(self.loss)
     }
 
     /// Everything that each robot sees to everybody, however much it is, and a few words

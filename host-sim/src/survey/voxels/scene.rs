@@ -2,8 +2,8 @@
 
 use planner_core::Extent;
 use planner_core::volume::Voxel;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::dice::Dice;
 
 /// A box of voxels; voxels of one cell's side.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Scene {
         const BLOCK: i16 = 20;
         const STREET: i16 = 8;
         const STOREY: i16 = 6;
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut dice = Dice::new(seed);
         let mut scene = Self::from_fn(format!("town-{seed}"), Extent::new(side, side), 18, |v| {
             v.z == 0
         });
@@ -55,8 +55,8 @@ impl Scene {
                 block / blocks * BLOCK + STREET,
             );
             let (east, south) = (west + BLOCK - STREET - 1, north + BLOCK - STREET - 1);
-            let storeys = 1 + (rng.next_u32() % 2) as i16;
-            let juts_out = rng.next_u32().is_multiple_of(2);
+            let storeys = 1 + dice.residue(2) as i16;
+            let juts_out = dice.residue(2) == 0;
             for storey in 0..storeys {
                 let floor = 1 + storey * STOREY;
                 let out = if storey > 0 && juts_out { 2 } else { 0 };
@@ -72,19 +72,15 @@ impl Scene {
                 );
                 // A door or a large window of 3×3 on one side, a slit on another.
                 let middle = (north + south) / 2;
-                let (x, slit) = if rng.next_u32().is_multiple_of(2) {
-                    (w, e)
-                } else {
-                    (e, w)
-                };
+                let (x, slit) = if dice.residue(2) == 0 { (w, e) } else { (e, w) };
                 scene.fill([x, middle - 1, floor], [x, middle + 1, floor + 3], false);
                 scene.fill([slit, middle, floor + 2], [slit, middle, floor + 2], false);
             }
-            if rng.next_u32().is_multiple_of(3) {
+            if dice.residue(3) == 0 {
                 let x = (west + east) / 2;
                 scene.fill([x, south + 1, 6], [x + 2, south + STREET, 6], true);
             }
-            let along = west + (rng.next_u32() % 6) as i16;
+            let along = west + dice.residue(6) as i16;
             scene.fill([along, north - 5, 2], [along + 3, north - 4, 2], true);
         }
         scene

@@ -2,8 +2,8 @@
 
 use planner_core::{Cell, Extent};
 
-use super::super::dice::Dice;
 use super::super::grid::Grid;
+use crate::dice::Dice;
 
 const ROUNDS: usize = 5;
 /// Share of the cells, in per cent, that the largest cavern must have.

@@ -2,8 +2,8 @@
 
 use planner_core::{Cell, Direction, Extent};
 
-use super::super::dice::Dice;
 use super::super::grid::Grid;
+use crate::dice::Dice;
 
 /// A maze inside a wall, carved by a random depth-first walk. Corridors are
 /// `corridor` cells wide and walls one; columns and rows that are left over on

@@ -12,9 +12,9 @@ use clap::ValueEnum;
 use planner_core::Extent;
 
 use super::World;
-use super::dice::Dice;
 use super::error::{Problem, WorldError};
 use super::grid::{self, Grid};
+use crate::dice::Dice;
 
 /// Least width and height of a generated world.
 const SMALLEST: u16 = 5;

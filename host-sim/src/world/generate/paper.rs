@@ -3,10 +3,10 @@
 
 use planner_core::{Cell, Extent};
 
-use super::super::dice::Dice;
 use super::super::grid::Grid;
 use super::super::{Starts, World};
 use super::{maze as mazes, scatter};
+use crate::dice::Dice;
 
 const ROBOTS: usize = 10;
 /// Share of the labyrinths' dead ends, in per cent, that are opened to a loop.

@@ -2,8 +2,8 @@
 
 use planner_core::{Cell, Extent};
 
-use super::super::dice::Dice;
 use super::super::grid::Grid;
+use crate::dice::Dice;
 
 /// Least side of a room.
 const SMALLEST_ROOM: i16 = 3;

@@ -2,8 +2,8 @@
 
 use planner_core::{Cell, Extent};
 
-use super::super::dice::Dice;
 use super::super::grid::Grid;
+use crate::dice::Dice;
 
 /// Each cell is an obstacle in `density` per cent of cases.
 pub(super) fn obstacles(extent: Extent, density: u16, dice: &mut Dice) -> Grid {

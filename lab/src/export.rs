@@ -3,7 +3,7 @@
 use host_sim::draw;
 use host_sim::trace::Trace;
 use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder};
+use image::{ColorType, ImageEncoder};
 use planner_core::Cell;
 
 use crate::colors::Colors;
@@ -72,7 +72,7 @@ pub fn png(watch: &Watch) -> Result<Vec<u8>, String> {
     }
     let bytes: Vec<u8> = ground::rgb(&pixels).collect();
     let mut png = Vec::new();
-    let kind = ExtendedColorType::Rgb8;
+    let kind = ColorType::Rgb8;
     PngEncoder::new(&mut png)
         .write_image(&bytes, width as u32, height as u32, kind)
         .map_err(|error| error.to_string())?;

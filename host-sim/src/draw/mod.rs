@@ -14,7 +14,7 @@ mod replay;
 use std::io;
 
 #[cfg(not(target_arch = "wasm32"))]
-use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use image::{ColorType, ImageEncoder, codecs::png::PngEncoder};
 use thiserror::Error;
 
 pub use animation::animation;
@@ -68,7 +68,7 @@ impl Canvas {
     }
 
     fn write_png(&self, to: impl io::Write) -> Result<(), DrawError> {
-        let color = ExtendedColorType::Rgb8;
+        let color = ColorType::Rgb8;
         Ok(PngEncoder::new(to).write_image(&self.pixels, self.width, self.height, color)?)
     }
 }

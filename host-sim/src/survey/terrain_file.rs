@@ -4,7 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Cursor, Read};
 use std::path::Path;
 
-use image::{ImageFormat, ImageReader, Limits};
+use image::ImageFormat;
+use image::io::{Limits, Reader as ImageReader};
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
 use thiserror::Error;

@@ -4,10 +4,8 @@ use std::io::Cursor;
 
 use image::codecs::png::PngEncoder;
 use image::codecs::pnm::{PnmEncoder, PnmSubtype, SampleEncoding};
-use image::{
-    DynamicImage, GenericImageView, GrayImage, ImageDecoder, ImageEncoder, ImageError, ImageReader,
-    Limits, Luma, Rgba,
-};
+use image::io::{Limits, Reader as ImageReader};
+use image::{GenericImageView, GrayImage, ImageEncoder, ImageError, Luma, Rgba};
 use planner_core::Cell;
 
 use super::World;
@@ -134,18 +132,16 @@ pub(super) fn cut(
     if bytes.is_empty() {
         return Err(Problem::BrokenImage("the file is empty".into()));
     }
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|error| Problem::BrokenImage(error.to_string()))?;
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MOST_BYTES);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(broken)?;
-    let (width, height) = decoder.dimensions();
+    let open = || {
+        ImageReader::new(Cursor::new(bytes))
+            .with_guessed_format()
+            .map_err(|error| Problem::BrokenImage(error.to_string()))
+    };
+    let (width, height) = open()?.into_dimensions().map_err(broken)?;
     if width == 0 || height == 0 {
         return Err(Problem::Empty);
     }
-    if decoder.total_bytes() > MOST_BYTES {
+    if u64::from(width) * u64::from(height) > MOST_BYTES {
         return Err(Problem::TooManyPixels);
     }
     let extent = grid::checked_extent(
@@ -158,7 +154,11 @@ pub(super) fn cut(
             format!("use --pixels-per-cell {enough} or more")
         },
     )?;
-    let image = DynamicImage::from_decoder(decoder).map_err(broken)?;
+    let mut limits = Limits::default();
+    limits.max_alloc = Some(MOST_BYTES);
+    let mut reader = open()?;
+    reader.limits(limits);
+    let image = reader.decode().map_err(broken)?;
 
     let has_alpha = image.color().has_alpha();
     let mut tally = Tally::default();

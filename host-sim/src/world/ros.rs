@@ -7,9 +7,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_saphyr::NonFiniteFloatPolicy;
+use granit_parser::{Event, Parser, ScalarStyle, StrInput};
 
 use super::World;
 use super::error::Problem;
@@ -23,103 +21,85 @@ const BETWEEN: &str = "neither occupied nor free by the keys of the file";
 /// The file as it stands: keys in lower case, with their values.
 struct Yaml(Vec<(String, Value)>);
 
-/// A value as it stands, whether in quotation marks or not.
+/// A value as it stands.
 enum Value {
+    /// In quotation marks or not: what it means, its key tells.
     Text(String),
-    Number(f64),
-    Flag(bool),
     List(Vec<Value>),
     Nothing,
     Map,
 }
 
-impl<'de> Deserialize<'de> for Yaml {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Keys;
-        impl<'de> Visitor<'de> for Keys {
-            type Value = Yaml;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("keys with values")
-            }
-
-            fn visit_unit<E>(self) -> Result<Yaml, E> {
-                Ok(Yaml(Vec::new()))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Yaml, A::Error> {
-                let mut entries: Vec<(String, Value)> = Vec::new();
-                while let Some(key) = map.next_key::<String>()? {
-                    let key = key.trim().to_ascii_lowercase();
-                    if entries.iter().any(|(other, _)| *other == key) {
-                        let key = excerpt(&key);
-                        return Err(A::Error::custom(format!("key `{key}` stands twice")));
-                    }
-                    entries.push((key, map.next_value()?));
-                }
-                Ok(Yaml(entries))
-            }
-        }
-        from.deserialize_any(Keys)
-    }
+/// What the parser sees, one after the other.
+struct Events<'a> {
+    parser: Parser<'a, StrInput<'a>>,
+    text: &'a str,
 }
 
-impl<'de> Deserialize<'de> for Value {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Any;
-        impl<'de> Visitor<'de> for Any {
-            type Value = Value;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a value")
-            }
-
-            fn visit_bool<E>(self, flag: bool) -> Result<Value, E> {
-                Ok(Value::Flag(flag))
-            }
-
-            fn visit_i64<E>(self, number: i64) -> Result<Value, E> {
-                Ok(Value::Number(number as f64))
-            }
-
-            fn visit_u64<E>(self, number: u64) -> Result<Value, E> {
-                Ok(Value::Number(number as f64))
-            }
-
-            fn visit_i128<E>(self, number: i128) -> Result<Value, E> {
-                Ok(Value::Number(number as f64))
-            }
-
-            fn visit_u128<E>(self, number: u128) -> Result<Value, E> {
-                Ok(Value::Number(number as f64))
-            }
-
-            fn visit_f64<E>(self, number: f64) -> Result<Value, E> {
-                Ok(Value::Number(number))
-            }
-
-            fn visit_str<E>(self, text: &str) -> Result<Value, E> {
-                Ok(Value::Text(text.into()))
-            }
-
-            fn visit_unit<E>(self) -> Result<Value, E> {
-                Ok(Value::Nothing)
-            }
-
-            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Value, A::Error> {
-                let mut values = Vec::new();
-                while let Some(value) = list.next_element()? {
-                    values.push(value);
-                }
-                Ok(Value::List(values))
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Value, A::Error> {
-                while map.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
-                Ok(Value::Map)
-            }
+impl<'a> Events<'a> {
+    fn next(&mut self) -> Result<(Event<'a>, usize), Problem> {
+        match self.parser.next_event() {
+            Some(Ok((event, span))) => Ok((event, span.start.line())),
+            Some(Err(error)) => Err(self.wrong(error.marker().line(), error.info())),
+            None => Ok((Event::StreamEnd, 1)),
         }
-        from.deserialize_any(Any)
+    }
+
+    /// The value that begins with `event`. The parser bounds how deep values may nest.
+    fn value(&mut self, event: Event<'a>, line: usize) -> Result<Value, Problem> {
+        Ok(match event {
+            Event::Scalar(text, ScalarStyle::Plain, ..)
+                if matches!(&*text, "" | "~" | "null" | "Null" | "NULL") =>
+            {
+                Value::Nothing
+            }
+            Event::Scalar(text, ..) => Value::Text(text.into_owned()),
+            Event::SequenceStart(..) => {
+                let mut values = Vec::new();
+                loop {
+                    match self.next()? {
+                        (Event::SequenceEnd, _) => break Value::List(values),
+                        (event, line) => values.push(self.value(event, line)?),
+                    }
+                }
+            }
+            Event::MappingStart(..) => loop {
+                match self.next()? {
+                    (Event::MappingEnd, _) => break Value::Map,
+                    (event, line) => drop(self.value(event, line)?),
+                }
+            },
+            _ => return Err(self.wrong(line, "expected a value, and no alias".into())),
+        })
+    }
+
+    /// Keys with their values, to the end of their map.
+    fn keys(&mut self, keys: &mut Vec<(String, Value)>) -> Result<(), Problem> {
+        loop {
+            let (event, line) = self.next()?;
+            if matches!(event, Event::MappingEnd) {
+                return Ok(());
+            }
+            let Value::Text(key) = self.value(event, line)? else {
+                return Err(self.wrong(line, "a key that is no word".into()));
+            };
+            let key = key.trim().to_ascii_lowercase();
+            if keys.iter().any(|(other, _)| *other == key) {
+                let found = format!("key `{}` stands twice", excerpt(&key));
+                return Err(self.wrong(line, found));
+            }
+            let (event, line) = self.next()?;
+            keys.push((key, self.value(event, line)?));
+        }
+    }
+
+    fn wrong(&self, line: usize, found: String) -> Problem {
+        // The line itself shows the key, which the parser does not name.
+        let text = self.text.lines().nth(line.saturating_sub(1));
+        Problem::Yaml {
+            text: excerpt(text.unwrap_or_default()),
+            found: excerpt(&found),
+        }
     }
 }
 
@@ -127,9 +107,10 @@ impl<'de> Deserialize<'de> for Value {
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Text(text) => write!(f, "`{}`", excerpt(text)),
-            Self::Number(number) => write!(f, "{number}"),
-            Self::Flag(flag) => write!(f, "{flag}"),
+            Self::Text(text) => match self.number() {
+                Some(number) => write!(f, "{number}"),
+                None => write!(f, "`{}`", excerpt(text)),
+            },
             Self::List(values) => {
                 let values: Vec<_> = values.iter().take(9).map(Value::to_string).collect();
                 write!(f, "[{}]", excerpt(&values.join(", ")))
@@ -141,31 +122,60 @@ impl fmt::Display for Value {
 }
 
 impl Value {
-    /// A number, in quotation marks too; `nan` as C++ prints it counts.
+    /// A number; `nan` and `inf` count as YAML and as C++ write them.
     fn number(&self) -> Option<f64> {
-        match self {
-            Self::Number(number) => Some(*number),
-            Self::Text(text) => text.trim().parse().ok(),
-            _ => None,
+        let Self::Text(text) = self else { return None };
+        let text = text.trim().to_ascii_lowercase();
+        let special = text.ends_with(".nan") || text.ends_with(".inf");
+        match special {
+            true => text.replacen('.', "", 1).parse().ok(),
+            false => text.parse().ok(),
         }
     }
 
     fn flag(&self) -> Option<bool> {
-        match self {
-            Self::Flag(flag) => Some(*flag),
-            Self::Number(0.0) => Some(false),
-            Self::Number(1.0) => Some(true),
-            Self::Text(text) => match text.trim().to_ascii_lowercase().as_str() {
-                "0" | "false" | "no" | "off" => Some(false),
-                "1" | "true" | "yes" | "on" => Some(true),
+        let Self::Text(text) = self else { return None };
+        match text.trim().to_ascii_lowercase().as_str() {
+            "false" | "no" | "off" => Some(false),
+            "true" | "yes" | "on" => Some(true),
+            _ => match self.number() {
+                Some(0.0) => Some(false),
+                Some(1.0) => Some(true),
                 _ => None,
             },
-            _ => None,
         }
     }
 }
 
 impl Yaml {
+    /// One document of keys with values, or nothing at all.
+    fn parse(text: &str) -> Result<Self, Problem> {
+        let options = granit_parser::options! { emit_comments: false };
+        let mut events = Events {
+            parser: Parser::new_from_str_with_options(text, options),
+            text,
+        };
+        let mut keys: Vec<(String, Value)> = Vec::new();
+        let mut documents = 0;
+        loop {
+            match events.next()? {
+                (Event::StreamEnd, _) => return Ok(Self(keys)),
+                (Event::DocumentStart(..), line) => {
+                    documents += 1;
+                    if documents > 1 {
+                        return Err(events.wrong(line, "a second document".into()));
+                    }
+                }
+                (Event::MappingStart(..), _) => events.keys(&mut keys)?,
+                (Event::StreamStart | Event::DocumentEnd, _) => {}
+                (event, line) => match events.value(event, line)? {
+                    Value::Nothing => {}
+                    _ => return Err(events.wrong(line, "no keys".into())),
+                },
+            }
+        }
+    }
+
     fn take(&mut self, key: &str) -> Value {
         let place = self.0.iter().position(|(other, _)| other == key);
         place.map_or(Value::Nothing, |place| self.0.swap_remove(place).1)
@@ -265,19 +275,7 @@ fn open_image(
 
 impl Description {
     fn parse(text: &str) -> Result<Self, Problem> {
-        let options = serde_saphyr::options! {
-            non_finite_float_policy: NonFiniteFloatPolicy::PassThrough,
-        };
-        let yaml = serde_saphyr::from_str_with_options(text, options);
-        let mut yaml: Yaml = yaml.map_err(|error| {
-            // The line itself shows the key, which the parser does not name.
-            let line = error.location().map_or(1, |location| location.line());
-            let line = text.lines().nth((line as usize).saturating_sub(1));
-            Problem::Yaml {
-                text: excerpt(line.unwrap_or_default()),
-                found: excerpt(&error.without_snippet().to_string()),
-            }
-        })?;
+        let mut yaml = Yaml::parse(text)?;
         let mut notes = Vec::new();
 
         const METRES: &str = "metres per pixel above 0, for example `resolution: 0.05`";
@@ -329,7 +327,6 @@ impl Description {
         const IMAGE: &str = "the image file beside the YAML file, for example `image: house.pgm`";
         let image = match yaml.take("image") {
             Value::Text(image) if !image.trim().is_empty() => image,
-            Value::Number(number) => number.to_string(),
             Value::Text(_) => return Err(wrong("image", IMAGE, &Value::Nothing)),
             other => return Err(wrong("image", IMAGE, &other)),
         };

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use egui::epaint::{ClippedPrimitive, ImageData, Mesh, Primitive, Vertex};
 use egui::{Color32, ColorImage, TextureFilter, TextureId, TexturesDelta};
 use egui_kittest::TestRenderer;
-use image::{Rgba, RgbaImage};
+use kittest_image::{Rgba, RgbaImage};
 
 /// Triangles with a texture, blended over each other.
 #[derive(Default)]

@@ -39,7 +39,7 @@ pub(super) const ROBOT_COLOURS: [Rgb<u8>; 8] = [
 /// Those of `to`.
 pub fn write_png(picture: &RgbImage, to: impl io::Write) -> Result<(), DrawError> {
     let (width, height) = picture.dimensions();
-    let colour = image::ExtendedColorType::Rgb8;
+    let colour = image::ColorType::Rgb8;
     Ok(PngEncoder::new(to).write_image(picture.as_raw(), width, height, colour)?)
 }
 

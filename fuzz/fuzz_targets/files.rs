@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use host_sim::draw;
-use host_sim::trace::{Trace, TraceError};
+use host_sim::record::TraceError;
+use host_sim::trace::Trace;
 use host_sim::world::{Problem, ReadOptions, Scale, World};
 use libfuzzer_sys::fuzz_target;
 

@@ -155,7 +155,7 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
                 survey::Deed::Refused,
                 survey::Deed::Hovered,
             ][usize::from(what >> 3) % 3],
-            target: (what & 0x80 != 0).then(|| Cell::new(from.byte().into(), -1)),
+            goal: (what & 0x80 != 0).then(|| Cell::new(from.byte().into(), -1)),
             gain: from.length(9.0),
             known: from.byte().into(),
             work: u32::from_le_bytes(from.array()),
@@ -172,6 +172,7 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
         seen: Vec::new(),
         found: Vec::new(),
         all_stopped: false,
+        stops: vec![None; robots],
         safety: Default::default(),
         decision_nanoseconds: Vec::new(),
     }
@@ -187,7 +188,6 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
     let robots = usize::from(1 + from.byte() % 3);
     let mut scenario = voxels::Scenario::new(robots, 0);
     scenario.range = from.byte() % 16;
-    let mut ways = vec![Vec::new(); robots];
     let voxel = |from: &mut Bytes<'_>| {
         let [x, y, z] = from.array().map(|byte: u8| match byte {
             255 => i16::MIN,
@@ -195,18 +195,34 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         });
         Voxel::new(x, y, z)
     };
-    while ways[0].is_empty() || !from.0.is_empty() && ways[0].len() < 100 {
-        for way in &mut ways {
-            way.push(voxel(from));
-        }
+    let ways = (0..robots).map(|_| vec![voxel(from)]).collect();
+    let mut records = Vec::new();
+    let mut tick = 0u32;
+    while !from.0.is_empty() && records.len() < 200 {
+        let what = from.byte();
+        let pause = match what & 7 {
+            0 => u32::from_le_bytes(from.array()),
+            1 => u32::from(from.byte()),
+            2 => 0,
+            _ => 1,
+        };
+        tick = tick.wrapping_add(pause);
+        records.push(voxels::Record {
+            tick,
+            robot: from.byte() % 4,
+            at: voxel(from),
+            deed: [survey::Deed::Flew, survey::Deed::Hovered][usize::from(what >> 3) % 2],
+            goal: (what & 0x80 != 0).then(|| voxel(from)),
+            known: 7,
+            work: 7,
+            sent: Default::default(),
+        });
     }
-    let records = robots * ways[0].len();
     VoxelTrace {
         scenario,
         scene,
-        work: vec![7; records],
-        sent: vec![Default::default(); records],
         ways,
+        records,
         found: Vec::new(),
         visible: 0,
         seen: Vec::new(),

@@ -14,6 +14,7 @@ pub use faults::{
 };
 
 use crate::medium::{Medium, Message};
+use crate::record::Reason;
 use crate::senses::Senses;
 use crate::sensor::Sensor;
 
@@ -67,9 +68,9 @@ pub struct Sent {
     pub bytes: u32,
 }
 
-/// What a decision came to.
+/// What a decision came to; `S` says why a robot had stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Deed {
+pub enum Deed<S = Stop> {
     /// Went to the neighbouring cell.
     Moved(Direction),
     /// Something stood in the way.
@@ -87,18 +88,34 @@ pub enum Deed {
     /// Turned its sensor there.
     Looked(Direction),
     /// Had stopped.
-    Stopped(Stop),
+    Stopped(S),
 }
 
 impl Deed {
+    /// The same as a record has it.
+    pub fn in_short(self) -> Deed<Reason> {
+        match self {
+            Self::Moved(to) => Deed::Moved(to),
+            Self::Blocked(to) => Deed::Blocked(to),
+            Self::Held(to) => Deed::Held(to),
+            Self::Exchanged(to) => Deed::Exchanged(to),
+            Self::Yielded => Deed::Yielded,
+            Self::Waited => Deed::Waited,
+            Self::Looked(to) => Deed::Looked(to),
+            Self::Stopped(stop) => Deed::Stopped(stop.into()),
+        }
+    }
+}
+
+impl<S> Deed<S> {
     /// Which way the robot turned by this; `None`: it did not.
-    pub fn turns_to(self) -> Option<Direction> {
+    pub fn turns_to(&self) -> Option<Direction> {
         match self {
             Self::Moved(to)
             | Self::Blocked(to)
             | Self::Held(to)
             | Self::Exchanged(to)
-            | Self::Looked(to) => Some(to),
+            | Self::Looked(to) => Some(*to),
             Self::Yielded | Self::Waited | Self::Stopped(_) => None,
         }
     }

@@ -27,6 +27,7 @@ pub mod measured;
 pub mod medium;
 pub mod peers;
 pub mod planners;
+pub mod record;
 pub mod run;
 pub mod senses;
 pub mod sensor;

@@ -271,7 +271,7 @@ fn robots_that_turn_see_everything_with_any_field_of_view() {
             assert_eq!(robot.cells_missed, 0, "{fov} degrees in {family}");
         }
         for direction in Direction::ALL {
-            let looked = |record: &&host_sim::trace::Record| record.looked() == Some(direction);
+            let looked = |record: &&host_sim::trace::Record| record.deed == Deed::Looked(direction);
             assert!(trace.records.iter().any(|record| looked(&record)));
         }
         // Whoever follows the trace sees what the robots saw.

@@ -1,10 +1,11 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
 use host_sim::medium::MediumKind;
+use host_sim::record::Reason;
 use host_sim::survey::octree::OcTree;
 use host_sim::survey::{Deed, Kill, Planner, Scenario, Terrain, look, octree, run, voxels};
 use planner_core::surface::Height;
-use planner_core::{Cell, Direction, Extent, Point, Stop};
+use planner_core::{Cell, Direction, Extent, Point};
 use proptest::prelude::*;
 
 const ALL: [Planner; 6] = [
@@ -96,7 +97,7 @@ fn faults_slow_a_survey_but_do_not_stop_it() {
             );
             for robot in killed as u8..4 {
                 let last = trace.of(robot.into()).last().unwrap();
-                assert_eq!(last.deed, Deed::Stopped(Stop::Complete));
+                assert_eq!(last.deed, Deed::Stopped(Reason::Complete));
             }
             assert_eq!(trace.safety, Default::default());
         }
@@ -187,12 +188,13 @@ fn frames_carry_voxels() {
             };
             let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
             assert!(trace.complete() && trace.all_stopped);
-            for sent in &trace.sent {
+            let sent = || trace.records.iter().map(|record| record.sent);
+            for sent in sent() {
                 assert!(sent.bytes <= u32::from(scenario.byte_budget));
                 assert!(sent.bytes <= 55 * sent.frames);
             }
             assert_eq!(
-                trace.sent.iter().any(|sent| sent.bytes > 0),
+                sent().any(|sent| sent.bytes > 0),
                 medium == MediumKind::Radio
             );
             trace.ticks_to(1.0).unwrap()

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use host_sim::fleet::Deed;
+use host_sim::record::Reason;
 use planner_core::{Cell, Direction};
 
 use crate::watch::Watch;
@@ -35,24 +37,20 @@ pub fn decisions(watch: &Watch, robot: usize, most: usize) -> Vec<Decision> {
             let tick = record.tick;
             found.push_front(Decision { tick, text });
         };
-        let toward = Direction::from_index(record.action);
-        match record.action {
-            4..=7 => say(format!("blocked on its way {}", name(toward))),
-            8..=11 => say("waits for a robot that goes first".into()),
-            12..=15 => say("exchanges roles with the robot in its way".into()),
-            17 => say("gives its role to a robot that wanted its cell".into()),
-            _ => {}
+        match record.deed {
+            Deed::Blocked(way) => say(format!("blocked on its way {}", name(way))),
+            Deed::Held(_) => say("waits for a robot that goes first".into()),
+            Deed::Exchanged(_) => say("exchanges roles with the robot in its way".into()),
+            Deed::Yielded => say("gives its role to a robot that wanted its cell".into()),
+            Deed::Looked(way) => say(format!("looks {}", name(way))),
+            Deed::Stopped(reason) if !stopped => say(stop(reason).into()),
+            Deed::Moved(_) | Deed::Waited | Deed::Stopped(_) => {}
         }
-        if let Some(way) = record.looked() {
-            say(format!("looks {}", name(way)));
-        }
-        if record.has_stopped() && !stopped {
-            say(stop(record.action).into());
-        }
-        if stopped && !record.has_stopped() {
+        let has_stopped = matches!(record.deed, Deed::Stopped(_));
+        if stopped && !has_stopped {
             say("is told to go on".into());
         }
-        stopped = record.has_stopped();
+        stopped = has_stopped;
         if let Some(next) = record.goal.filter(|&next| goal != Some(next)) {
             let why = match goal {
                 None => "it had no goal",
@@ -94,18 +92,17 @@ pub fn name(direction: Direction) -> &'static str {
 }
 
 /// The record's reason to stop in words.
-fn stop(action: u8) -> &'static str {
-    match action - 32 {
-        0 => "stops: complete",
-        1 => "stops: complete, the rest lies behind walls",
-        2 => "gives up: the way stayed blocked",
-        3 => "stops: back at the start with no frontier in view",
-        4 => "stops: no frontier in view and no trace to follow",
-        5 => "stops: complete within the map, whose edge cuts the world off",
-        6 => "stops: complete, no way leads to what else is in sight",
-        7 => "gives up: no look shows what is left",
-        8 => "gives up: a robot stayed in the way",
-        _ => "stops, for a reason that this lab does not know",
+fn stop(reason: Reason) -> &'static str {
+    match reason {
+        Reason::Complete => "stops: complete",
+        Reason::Enclosed => "stops: complete, the rest lies behind walls",
+        Reason::Blocked => "gives up: the way stayed blocked",
+        Reason::BackAtStart => "stops: back at the start with no frontier in view",
+        Reason::NoTrace => "stops: no frontier in view and no trace to follow",
+        Reason::AtEdge => "stops: complete within the map, whose edge cuts the world off",
+        Reason::OutOfReach => "stops: complete, no way leads to what else is in sight",
+        Reason::Unseen => "gives up: no look shows what is left",
+        Reason::Held => "gives up: a robot stayed in the way",
     }
 }
 

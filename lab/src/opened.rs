@@ -1,8 +1,9 @@
 //! What a file holds that was opened: a map, or a trace of any kind.
 
+use host_sim::record::TraceError;
 use host_sim::survey;
 use host_sim::survey::voxels::VoxelTrace;
-use host_sim::trace::{Trace, TraceError};
+use host_sim::trace::Trace;
 
 use crate::maps::Map;
 
@@ -48,7 +49,7 @@ impl Opened {
             VoxelTrace::read(bytes).map(|trace| Self::Voxels(Box::new(trace)))
         });
         read.map_err(|error| match error {
-            TraceError::Format { reads, format, .. } if reads.format != format => format!(
+            TraceError::Format { reads, format, .. } if reads.name != format => format!(
                 "{name}: is no trace of host-sim but `{format}`; open a trace.csv that \
                  `host-sim explore` or `host-sim survey` has written"
             ),
@@ -63,7 +64,7 @@ fn or(
     next: impl Fn() -> Result<Opened, TraceError>,
 ) -> Result<Opened, TraceError> {
     match read {
-        Err(TraceError::Format { reads, format, .. }) if reads.format != format => next(),
+        Err(TraceError::Format { reads, format, .. }) if reads.name != format => next(),
         read => read,
     }
 }

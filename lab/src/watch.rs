@@ -409,7 +409,7 @@ impl History {
                         self.seen_cells += u32::from(reachable.contains(cell));
                     }
                 }
-                if let Some(to) = record.turns_to() {
+                if let Some(to) = record.deed.turns_to() {
                     senses.turn(robot, to);
                 }
             }

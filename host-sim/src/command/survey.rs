@@ -160,7 +160,7 @@ impl Survey {
         let mut folder = Folder::open(out)?;
         while run.step() {}
         let trace = run.finish();
-        let work = trace.work.iter().copied();
+        let work = trace.records.iter().map(|record| record.work);
         let robots: Vec<_> = (0..scenario.robots)
             .map(|robot| voxel_robot(&trace, robot))
             .collect();
@@ -294,17 +294,15 @@ impl Survey {
 
 /// What one robot of a survey of voxels came to.
 fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
-    let decisions = trace.ways.len();
-    let of = |index: &usize| index % decisions == robot;
-    let (way, sent) = (&trace.ways[robot], (0..trace.sent.len()).filter(of));
-    let sent: Vec<_> = sent.map(|index| trace.sent[index]).collect();
-    let work = (0..trace.work.len()).filter(of);
+    let way = &trace.ways[robot];
+    let records = trace.records.iter();
+    let own = records.filter(|record| usize::from(record.robot) == robot);
     serde_json::json!({
         "start": (way[0].x, way[0].y, way[0].z),
         "steps": way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
-        "work": work.map(|index| u64::from(trace.work[index])).sum::<u64>(),
-        "frames_sent": sent.iter().map(|sent| sent.frames).sum::<u32>(),
-        "bytes_sent": sent.iter().map(|sent| sent.bytes).sum::<u32>(),
+        "work": own.clone().map(|record| u64::from(record.work)).sum::<u64>(),
+        "frames_sent": own.clone().map(|record| record.sent.frames).sum::<u32>(),
+        "bytes_sent": own.map(|record| record.sent.bytes).sum::<u32>(),
         "stop": trace.stops[robot].map(|stop| stop.name()),
         "stop_reason": trace.stops[robot].map(|stop| stop.to_string()),
     })

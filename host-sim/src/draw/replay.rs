@@ -67,7 +67,7 @@ impl<'a> Replay<'a> {
                 }
             }
         }
-        if let Some(to) = record.turns_to() {
+        if let Some(to) = record.deed.turns_to() {
             self.senses.turn(robot, to);
         }
         if let Some(position) = self.positions.get_mut(robot) {

@@ -18,6 +18,7 @@ mod terrain_source;
 mod trace;
 pub mod voxels;
 
+pub use crate::record::Deed;
 pub use error::SurveyError;
 pub use mapped::octree;
 pub use run::{Here, Host, Stepping, open, run, run_on};
@@ -27,4 +28,4 @@ pub use summary::{RobotSummary, Summary};
 pub use terrain::Terrain;
 pub use terrain_file::TerrainError;
 pub use terrain_source::TerrainSource;
-pub use trace::{Deed, Record, Safety, Trace};
+pub use trace::{Record, Safety, Trace};

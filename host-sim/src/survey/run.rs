@@ -17,10 +17,11 @@ use super::error::SurveyError;
 use super::scenario::{Planner, Scenario};
 use super::sensor::look;
 use super::terrain::Terrain;
-use super::trace::{Deed, Record, Safety, Trace};
+use super::trace::{Record, Safety, Trace};
 use crate::dice::Dice;
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
+use crate::record::Deed;
 
 /// Where the planners of a survey are.
 pub trait Host {
@@ -347,7 +348,7 @@ impl<const T: usize> Simulation<T> {
         let mut deed = match action {
             Action::Fly(_) => Deed::Flew,
             Action::Hover => Deed::Hovered,
-            Action::Stop(reason) => Deed::Stopped(reason),
+            Action::Stop(reason) => Deed::Stopped(reason.into()),
         };
         if let Action::Fly(to) = action {
             if self.collides(i, to) {
@@ -365,7 +366,11 @@ impl<const T: usize> Simulation<T> {
             let at = self.robots[i].at;
             self.robots[i].pilot.get_mut().report(motion, at);
         }
-        self.robots[i].stopped = matches!(action, Action::Stop(_));
+        self.trace.stops[i] = match action {
+            Action::Stop(reason) => Some(reason),
+            Action::Fly(_) | Action::Hover => None,
+        };
+        self.robots[i].stopped = self.trace.stops[i].is_some();
         let status = self.robots[i].pilot.get().status();
         match self.scenario.medium {
             MediumKind::Radio => self.transmit(i, 1),
@@ -384,7 +389,7 @@ impl<const T: usize> Simulation<T> {
             robot: i as u8,
             at: robot.at,
             deed,
-            target: status.target,
+            goal: status.target,
             gain: knowledge.gain(),
             known: knowledge.surface().known_columns(),
             work: robot.pilot.get().work(),

@@ -134,7 +134,7 @@ impl RobotSummary {
         let way = trace.way(robot, u32::MAX);
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
         let start = trace.starts[robot];
-        let stop = trace.stop(robot);
+        let stop = trace.stops[robot];
         let dies = |kill: &super::Kill| kill.robot == robot && kill.step < trace.seen.len() as u32;
         Self {
             start: (start.x, start.y, start.z),

@@ -1,53 +1,29 @@
 //! What a run leaves behind.
 //!
-//! A trace file is text. Line 1 is a JSON object, the *header*: the scenario with the
-//! terrain's heights in quarters of a cell, why each robot had stopped at the end, the
-//! number of records and their digest.
-//! Line 2 names the columns; every further line is one record, [`COLUMNS`]. Numbers
-//! with a decimal point are the shortest that read back as the same `f32`.
-//!
-//! The digest is the first 16 hex digits of the SHA-256 of all records, each as 42
-//! bytes, little-endian: tick `u32`, robot `u8`, x, y, z `f32`, action `u8`, goal x, y
-//! `i16`, gain `f32`, known `u32`, work `u32`, frames `u32`, bytes `u32`.
+//! As a file it is as [`record`](crate::record) says; the header holds the scenario, the
+//! terrain's heights in quarters of a cell and why each robot had stopped at the end, the
+//! columns are the fields of a [`Record`]. Version 1 had the reasons 33 and 39 the other
+//! way round.
 
 mod read;
 
-use std::{fmt, io};
+use std::io;
 
 use planner_core::surface::Column;
 use planner_core::{Cell, Extent, Point, Stop};
-use serde_json::json;
-use sha2::{Digest, Sha256};
+use serde::{Deserialize, Serialize};
 
-use super::scenario::Scenario;
+use super::scenario::{Planner, Scenario};
 use super::terrain::Terrain;
 use crate::fleet::Sent;
-use crate::trace::{Kind, hex_digits};
+use crate::medium::MediumKind;
+use crate::record::{self, Deed, Format};
 
-const KIND: Kind = Kind {
-    format: "host-sim survey trace",
-    version: 1,
-    columns: &COLUMNS,
+const FORMAT: Format = Format {
+    name: "host-sim survey trace",
+    version: 2,
+    oldest: 1,
 };
-
-/// The columns of a record.
-const COLUMNS: [&str; 13] = [
-    "tick", "robot", "x", "y", "z", "action", "goal_x", "goal_y", "gain", "known", "work",
-    "frames", "bytes",
-];
-
-/// What a robot did in a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Deed {
-    /// It flew.
-    Flew,
-    /// The flight controller refused its flight, for another robot's sake.
-    Refused,
-    /// It stayed.
-    Hovered,
-    /// It has stopped.
-    Stopped(Stop),
-}
 
 /// One decision of one robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,11 +35,10 @@ pub struct Record {
     /// Where the robot is after it.
     pub at: Point,
     /// What became of it; in the file and the digest 0 flew, 1 refused, 2 hovered, from
-    /// 32 on had stopped: 32 and [`Stop::code`], but 33 for [`Stop::Unseen`], as in the
-    /// first traces, and 39 for [`Stop::Enclosed`].
+    /// 32 on had stopped: 32 and [`Stop::code`].
     pub deed: Deed,
     /// The frontier that it announces; in the file and the digest -1, -1 for none.
-    pub target: Option<Cell>,
+    pub goal: Option<Cell>,
     /// What the robot's last step added to its reward [Renzaglia2019 eq. 1].
     pub gain: f32,
     /// Columns on its map.
@@ -74,44 +49,45 @@ pub struct Record {
     pub sent: Sent,
 }
 
+record::row!(
+    /// A record in the file.
+    Row {
+        tick: u32,
+        robot: u8,
+        x: f32,
+        y: f32,
+        z: f32,
+        action: u8,
+        goal_x: i16,
+        goal_y: i16,
+        gain: f32,
+        known: u32,
+        work: u32,
+        frames: u32,
+        bytes: u32,
+    }
+);
+
+const NOWHERE: Cell = Cell::new(-1, -1);
+
 impl Record {
-    fn action(&self) -> u8 {
-        match self.deed {
-            Deed::Flew => 0,
-            Deed::Refused => 1,
-            Deed::Hovered => 2,
-            Deed::Stopped(Stop::Unseen { .. }) => 33,
-            Deed::Stopped(Stop::Enclosed { .. }) => 39,
-            Deed::Stopped(stop) => 32 + stop.code(),
+    fn row(&self) -> Row {
+        let goal = self.goal.unwrap_or(NOWHERE);
+        Row {
+            tick: self.tick,
+            robot: self.robot,
+            x: self.at.x,
+            y: self.at.y,
+            z: self.at.z,
+            action: self.deed.action(),
+            goal_x: goal.x,
+            goal_y: goal.y,
+            gain: self.gain,
+            known: self.known,
+            work: self.work,
+            frames: self.sent.frames,
+            bytes: self.sent.bytes,
         }
-    }
-
-    fn goal(&self) -> Cell {
-        self.target.unwrap_or(Cell::new(-1, -1))
-    }
-}
-
-impl fmt::Display for Record {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { at, sent, .. } = self;
-        let goal = self.goal();
-        write!(
-            f,
-            "{},{},{},{},{},{},{},{},{},{},{},{},{}",
-            self.tick,
-            self.robot,
-            at.x,
-            at.y,
-            at.z,
-            self.action(),
-            goal.x,
-            goal.y,
-            self.gain,
-            self.known,
-            self.work,
-            sent.frames,
-            sent.bytes
-        )
     }
 }
 
@@ -159,6 +135,8 @@ pub struct Trace {
     pub found: Vec<(u32, Column)>,
     /// Whether the run ended because every living robot had stopped.
     pub all_stopped: bool,
+    /// Why each robot had stopped when it last decided, if it had.
+    pub stops: Vec<Option<Stop>>,
     /// What should never happen.
     pub safety: Safety,
     /// Host time of each decision; not part of the digest, and empty in the browser.
@@ -172,6 +150,7 @@ impl Trace {
             terrain: terrain.clone(),
             extent: terrain.extent(),
             robots: starts.len(),
+            stops: vec![None; starts.len()],
             starts,
             records: Vec::new(),
             seen: Vec::new(),
@@ -216,14 +195,6 @@ impl Trace {
             .filter(move |record| usize::from(record.robot) == robot)
     }
 
-    /// Why `robot` had stopped at the end, if it had.
-    pub fn stop(&self, robot: usize) -> Option<Stop> {
-        match self.of(robot).last()?.deed {
-            Deed::Stopped(stop) => Some(stop),
-            _ => None,
-        }
-    }
-
     /// Where `robot` was, from the start until after `steps` steps.
     pub fn way(&self, robot: usize, steps: u32) -> Vec<Point> {
         let start = self.starts.get(robot).copied();
@@ -238,45 +209,9 @@ impl Trace {
     ///
     /// # Errors
     /// Those of `to`.
-    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
-        let Scenario { limits, kills, .. } = &self.scenario;
-        let kills: Vec<_> = kills.iter().map(|kill| (kill.robot, kill.step)).collect();
-        let stops: Vec<_> = (0..self.robots).map(|robot| self.stop(robot)).collect();
-        let starts: Vec<_> = self.starts.iter().map(|p| [p.x, p.y, p.z]).collect();
-        let heights: Vec<Vec<u8>> = (0..self.extent.height as i16)
-            .map(|y| {
-                let row = (0..self.extent.width as i16).map(|x| Cell::new(x, y));
-                row.map(|cell| self.terrain.height(cell).unwrap_or_default().0)
-                    .collect()
-            })
-            .collect();
-        let header = json!({
-            "format": KIND.format,
-            "version": KIND.version,
-            "digest": self.digest(),
-            "records": self.records.len(),
-            "planner": self.scenario.planner,
-            "range": limits.range,
-            "step": limits.step,
-            "min_altitude": limits.min_altitude,
-            "ceiling": limits.ceiling,
-            "separation": limits.separation,
-            "medium": self.scenario.medium,
-            "byte_budget": self.scenario.byte_budget,
-            "loss": self.scenario.loss,
-            "skip": self.scenario.skip,
-            "seed": self.scenario.seed,
-            "max_ticks": self.scenario.max_ticks,
-            "starts": starts,
-            "deaths": kills,
-            "stops": stops,
-            "world": { "name": self.terrain.name(), "heights": heights },
-        });
-        writeln!(to, "{header}\n{}", COLUMNS.join(","))?;
-        for record in &self.records {
-            writeln!(to, "{record}")?;
-        }
-        Ok(())
+    pub fn write(&self, to: impl io::Write) -> io::Result<()> {
+        let rows = self.records.iter().map(Record::row);
+        record::write(to, FORMAT, &Header::of(self), rows)
     }
 
     /// Writes `tick,seen_cells,seen_share` line by line; the share is of all columns, 0
@@ -295,30 +230,80 @@ impl Trace {
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        digest(&self.records)
+        record::digest(self.records.iter().map(Record::row))
     }
 }
 
-fn digest(records: &[Record]) -> String {
-    let mut sha = Sha256::new();
-    for record in records {
-        sha.update(record.tick.to_le_bytes());
-        sha.update([record.robot]);
-        for coordinate in [record.at.x, record.at.y, record.at.z] {
-            sha.update(coordinate.to_le_bytes());
-        }
-        sha.update([record.action()]);
-        sha.update(record.goal().x.to_le_bytes());
-        sha.update(record.goal().y.to_le_bytes());
-        sha.update(record.gain.to_le_bytes());
-        for number in [
-            record.known,
-            record.work,
-            record.sent.frames,
-            record.sent.bytes,
-        ] {
-            sha.update(number.to_le_bytes());
+#[derive(Serialize, Deserialize)]
+struct Header {
+    planner: Planner,
+    range: f32,
+    step: f32,
+    min_altitude: f32,
+    ceiling: f32,
+    separation: f32,
+    medium: MediumKind,
+    byte_budget: u16,
+    loss: f64,
+    skip: f64,
+    seed: u64,
+    max_ticks: u32,
+    starts: Vec<[f32; 3]>,
+    /// (robot, step)
+    deaths: Vec<(usize, u32)>,
+    /// Of each robot at the end; older traces have none.
+    #[serde(default)]
+    stops: Vec<Option<Stop>>,
+    world: Heights,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Heights {
+    name: String,
+    /// In quarters of a cell, row by row.
+    heights: Vec<Vec<u8>>,
+}
+
+impl Header {
+    fn of(trace: &Trace) -> Self {
+        let Scenario {
+            planner,
+            limits,
+            kills,
+            ..
+        } = &trace.scenario;
+        Self {
+            planner: *planner,
+            range: limits.range,
+            step: limits.step,
+            min_altitude: limits.min_altitude,
+            ceiling: limits.ceiling,
+            separation: limits.separation,
+            medium: trace.scenario.medium,
+            byte_budget: trace.scenario.byte_budget,
+            loss: trace.scenario.loss,
+            skip: trace.scenario.skip,
+            seed: trace.scenario.seed,
+            max_ticks: trace.scenario.max_ticks,
+            starts: trace.starts.iter().map(|p| [p.x, p.y, p.z]).collect(),
+            deaths: kills.iter().map(|kill| (kill.robot, kill.step)).collect(),
+            stops: trace.stops.clone(),
+            world: Heights::of(&trace.terrain),
         }
     }
-    hex_digits(sha)
+}
+
+impl Heights {
+    fn of(terrain: &Terrain) -> Self {
+        let Extent { width, height } = terrain.extent();
+        let row = |y| {
+            let row = (0..width as i16).map(|x| Cell::new(x, y));
+            row.map(|cell| terrain.height(cell).unwrap_or_default().0)
+                .collect()
+        };
+        Self {
+            name: terrain.name().into(),
+            heights: (0..height as i16).map(row).collect(),
+        }
+    }
 }

@@ -1,121 +1,97 @@
 //! Whether records can be those of a run, before anything is drawn from them.
 
-use std::fmt::Display;
+use planner_core::Cell;
 
-use planner_core::{Cell, Stop};
-
-use super::{LOOKED, Record, STOPPED, TraceError};
+use super::{LAST_ACT, NOWHERE, Record, Row};
+use crate::fleet::{Deed, Sent};
+use crate::record::{Objection, Order, Reason, wrong};
 use crate::run::Scenario;
 
-/// The line of the first record.
-const FIRST_LINE: usize = 3;
 /// Most ticks without a record, all together: every robot is dead or still to come.
 const MOST_EMPTY_TICKS: u32 = 1_000_000;
-/// The last action of a robot that has not stopped: a look to the north.
-const LAST_ACT: u8 = LOOKED + 3;
-/// The newest reason to stop.
-const LAST_STOP: u8 = Stop::Held {
-    frontiers: 0,
-    at: Cell::new(0, 0),
-}
-.code();
 
-/// Checks all records against their scenario: robots that there are, by tick and then by
-/// robot, each where its last step has led it, inside the world.
-///
-/// # Errors
-/// The line of the first record that cannot be.
-pub(super) fn check(scenario: &Scenario, records: &[Record]) -> Result<(), TraceError> {
-    let mut checked = Checked {
-        scenario,
-        positions: scenario.starts.clone(),
-        last: None,
-        empty_ticks: 0,
-    };
-    for (record, line) in records.iter().zip(FIRST_LINE..) {
-        checked.take(record).map_err(|wrong| TraceError::Line {
-            line,
-            expected: wrong.expected,
-            found: wrong.found,
-        })?;
-    }
-    Ok(())
-}
-
-/// The records up to here.
-struct Checked<'a> {
+/// The records up to here: robots that there are, by tick and then by robot, each where
+/// its last step has led it, inside the world.
+pub(super) struct Checked<'a> {
     scenario: &'a Scenario,
     /// Where each robot is.
     positions: Vec<Cell>,
-    /// Tick and robot of the last record.
-    last: Option<(u32, u8)>,
+    order: Order,
     empty_ticks: u32,
 }
 
-struct Wrong {
-    expected: String,
-    found: String,
-}
+impl<'a> Checked<'a> {
+    pub(super) fn new(scenario: &'a Scenario) -> Self {
+        Self {
+            scenario,
+            positions: scenario.starts.clone(),
+            order: Order {
+                robots: scenario.starts.len(),
+                end: scenario.max_ticks,
+                last: None,
+            },
+            empty_ticks: 0,
+        }
+    }
 
-fn wrong<T>(expected: impl Into<String>, found: impl Display) -> Result<T, Wrong> {
-    Err(Wrong {
-        expected: expected.into(),
-        found: found.to_string(),
-    })
-}
-
-impl Checked<'_> {
-    fn take(&mut self, record: &Record) -> Result<(), Wrong> {
+    /// The next record.
+    ///
+    /// # Errors
+    /// What no run leaves.
+    pub(super) fn take(&mut self, row: Row) -> Result<Record, Objection> {
         let extent = self.scenario.world.extent();
         let inside = || format!("inside the world of {extent} cells");
-        let Record { tick, robot, .. } = *record;
-        self.check_tick(tick)?;
-        let robots = self.positions.len();
-        let Some(position) = self.positions.get_mut(usize::from(robot)) else {
-            return wrong(format!("a robot from 0 to {}", robots - 1), robot);
+        let next = self
+            .order
+            .last
+            .map_or(0, |(last, _)| last.saturating_add(1));
+        self.order.take(row.tick, row.robot)?;
+        self.check_gap(next, row.tick)?;
+        let Some(deed) = Deed::of_action(row.action) else {
+            let (first, last) = (Reason::Complete.action(), Reason::last_action());
+            let expected = format!("an action, 0 to {LAST_ACT} or {first} to {last}");
+            return Err(wrong(expected, row.action));
         };
-        if self.last.is_some_and(|last| last >= (tick, robot)) {
-            return wrong("each robot once a tick, in order", format!("robot {robot}"));
-        }
-        self.last = Some((tick, robot));
+        let goal = Cell::new(row.goal_x, row.goal_y);
+        let record = Record {
+            tick: row.tick,
+            robot: row.robot,
+            at: Cell::new(row.x, row.y),
+            deed,
+            goal: (goal != NOWHERE).then_some(goal),
+            known: row.known,
+            work: row.work,
+            sent: Sent {
+                frames: row.frames,
+                bytes: row.bytes,
+            },
+        };
         if !extent.contains(record.at) {
-            return wrong(format!("a robot {}", inside()), record.at);
+            return Err(wrong(format!("a robot {}", inside()), record.at));
         }
+        let position = &mut self.positions[usize::from(row.robot)];
         if record.at != *position {
-            let expected = format!("robot {robot} at {position}, where it was");
-            return wrong(expected, record.at);
-        }
-        let last = STOPPED + LAST_STOP;
-        if !(0..=LAST_ACT)
-            .chain(STOPPED..=last)
-            .any(|action| action == record.action)
-        {
-            let expected = format!("an action, 0 to {LAST_ACT} or {STOPPED} to {last}");
-            return wrong(expected, record.action);
+            let expected = format!("robot {} at {position}, where it was", row.robot);
+            return Err(wrong(expected, record.at));
         }
         if !extent.contains(record.after()) {
-            return wrong(format!("a step that ends {}", inside()), record.after());
+            let expected = format!("a step that ends {}", inside());
+            return Err(wrong(expected, record.after()));
         }
         *position = record.after();
         if let Some(goal) = record.goal.filter(|&goal| !extent.contains(goal)) {
-            return wrong(format!("a goal {}, or -1,-1 for none", inside()), goal);
+            let expected = format!("a goal {}, or -1,-1 for none", inside());
+            return Err(wrong(expected, goal));
         }
         if record.known > extent.cells() {
             let expected = format!("at most {} known cells", extent.cells());
-            return wrong(expected, record.known);
+            return Err(wrong(expected, record.known));
         }
-        Ok(())
+        Ok(record)
     }
 
-    fn check_tick(&mut self, tick: u32) -> Result<(), Wrong> {
-        let next = self.last.map_or(0, |(last, _)| last.saturating_add(1));
-        if self.last.is_some_and(|(last, _)| tick < last) {
-            return wrong("ticks in order", format!("tick {tick}"));
-        }
-        if tick >= self.scenario.max_ticks {
-            let expected = format!("at most {} ticks, by the header", self.scenario.max_ticks);
-            return wrong(expected, format!("tick {tick}"));
-        }
+    /// Ticks without a record, from `next` on, end where somebody comes.
+    fn check_gap(&mut self, next: u32, tick: u32) -> Result<(), Objection> {
         let empty = tick.saturating_sub(next);
         self.empty_ticks = self.empty_ticks.saturating_add(empty);
         let faults = &self.scenario.faults;
@@ -123,11 +99,11 @@ impl Checked<'_> {
         let mut births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
         if empty > 0 && births.all(|birth| birth != tick) {
             let expected = format!("tick {next}, as no robot arrives or restarts in {tick}");
-            return wrong(expected, format!("tick {tick}"));
+            return Err(wrong(expected, format!("tick {tick}")));
         }
         if self.empty_ticks > MOST_EMPTY_TICKS {
             let expected = format!("at most {MOST_EMPTY_TICKS} ticks without a record");
-            return wrong(expected, format!("tick {tick}"));
+            return Err(wrong(expected, format!("tick {tick}")));
         }
         Ok(())
     }

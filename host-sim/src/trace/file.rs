@@ -4,186 +4,28 @@ use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 
 use planner_core::{Cell, Extent, RobotId};
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-use super::check::check;
-use super::{COLUMNS, NOWHERE, Record, Trace};
-use crate::excerpt::excerpt;
+use super::check::Checked;
+use super::{Record, Row, Trace};
 use crate::fleet::{
-    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure, Sent,
+    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure,
 };
 use crate::medium::{AirFaults, MediumKind};
 use crate::planners::PlannerKind;
-use crate::run::{Scenario, ScenarioError};
+use crate::record::{self, Format, TraceError};
+use crate::run::Scenario;
 use crate::sensor::ALL_AROUND;
-use crate::world::{World, WorldError};
+use crate::world::World;
 
-const KIND: Kind = Kind {
-    format: "host-sim trace",
+const FORMAT: Format = Format {
+    name: "host-sim trace",
     version: 2,
-    columns: &COLUMNS,
+    oldest: 2,
 };
-
-/// A trace that cannot be read.
-#[derive(Debug, Error)]
-pub enum TraceError {
-    /// See the message.
-    #[error("cannot be read: {0}")]
-    Io(#[from] io::Error),
-    /// See the message.
-    #[error(
-        "line 1: expected the JSON header of a trace: {}; is this a trace file?",
-        excerpt(&.0.to_string())
-    )]
-    Header(#[from] serde_json::Error),
-    /// See the message.
-    #[error(
-        "is `{format}` version {version}, this program reads `{}` version {}; \
-         run the scenario again to have a trace of that version", .reads.format, .reads.version
-    )]
-    Format {
-        /// What can be read.
-        reads: Kind,
-        /// What the header says.
-        format: String,
-        /// What the header says.
-        version: u32,
-    },
-    /// See the message.
-    #[error("the header's world: {0}")]
-    World(#[from] WorldError),
-    /// See the message.
-    #[error("the header's world: row {row} has {found} cells, the first has {expected}")]
-    Ragged {
-        /// Which row, from 1.
-        row: usize,
-        /// Length of the first row.
-        expected: usize,
-        /// Length of this one.
-        found: usize,
-    },
-    /// See the message.
-    #[error("the header's scenario: {0}")]
-    Scenario(#[from] ScenarioError),
-    /// See the message.
-    #[error("the header's survey: {0}; it was edited or damaged")]
-    Survey(String),
-    /// See the message.
-    #[error("line {line}: expected {expected}, found \"{found}\"")]
-    Line {
-        /// Which line, from 1.
-        line: usize,
-        /// What should be there.
-        expected: String,
-        /// What is there.
-        found: String,
-    },
-    /// See the message.
-    #[error(
-        "has {found} records, its header says {expected}; it was cut off or edited: \
-         copy it again from where it was written"
-    )]
-    Records {
-        /// By the header.
-        expected: usize,
-        /// In the file.
-        found: usize,
-    },
-    /// See the message.
-    #[error(
-        "has digest {found}, its header says {expected}; it was edited or damaged: \
-         copy it again from where it was written"
-    )]
-    Digest {
-        /// By the header.
-        expected: String,
-        /// Of the records.
-        found: String,
-    },
-}
-
-/// What traces of one kind have in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kind {
-    /// What the header says.
-    pub format: &'static str,
-    /// What the header says.
-    pub version: u32,
-    /// The columns of a record.
-    pub columns: &'static [&'static str],
-}
-
-/// What every header says of the file itself.
-#[derive(Deserialize)]
-struct Label {
-    format: String,
-    version: u32,
-    digest: String,
-    records: usize,
-}
-
-impl Kind {
-    /// Takes a trace file of this kind apart, and checks that it is whole; `parse` reads
-    /// a record.
-    pub(crate) fn read<H: DeserializeOwned, R>(
-        self,
-        from: impl BufRead,
-        parse: impl Fn(&str) -> Option<R>,
-        digest: impl Fn(&[R]) -> String,
-    ) -> Result<(H, Vec<R>), TraceError> {
-        let mut lines = from.lines();
-        let header = lines.next().transpose()?.unwrap_or_default();
-        let label: Label = serde_json::from_str(&header)?;
-        if (&*label.format, label.version) != (self.format, self.version) {
-            return Err(TraceError::Format {
-                reads: self,
-                format: excerpt(&label.format),
-                version: label.version,
-            });
-        }
-        let header = serde_json::from_str(&header)?;
-        let columns = lines.next().transpose()?.unwrap_or_default();
-        if columns != self.columns.join(",") {
-            return Err(TraceError::Line {
-                line: 2,
-                expected: format!("the columns {}", self.columns.join(",")),
-                found: excerpt(&columns),
-            });
-        }
-        let records = lines
-            .zip(3..)
-            .map(|(text, line)| {
-                let text = text?;
-                parse(&text).ok_or_else(|| TraceError::Line {
-                    line,
-                    expected: format!("{} numbers with commas between", self.columns.len()),
-                    found: excerpt(&text),
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        if records.len() != label.records {
-            return Err(TraceError::Records {
-                expected: label.records,
-                found: records.len(),
-            });
-        }
-        let found = digest(&records);
-        if found != label.digest {
-            let expected = excerpt(&label.digest);
-            return Err(TraceError::Digest { expected, found });
-        }
-        Ok((header, records))
-    }
-}
 
 #[derive(Serialize, Deserialize)]
 struct Header {
-    format: String,
-    version: u32,
-    digest: String,
-    records: usize,
     planner: PlannerKind,
     range: u8,
     /// Absent where sensors look all around.
@@ -241,28 +83,9 @@ impl Trace {
     ///
     /// # Errors
     /// Those of `to`.
-    pub fn write(&self, mut to: impl Write) -> io::Result<()> {
-        serde_json::to_writer(&mut to, &Header::of(self))?;
-        writeln!(to, "\n{}", COLUMNS.join(","))?;
-        for record in &self.records {
-            let goal = record.goal.unwrap_or(NOWHERE);
-            writeln!(
-                to,
-                "{},{},{},{},{},{},{},{},{},{},{}",
-                record.tick,
-                record.robot,
-                record.at.x,
-                record.at.y,
-                record.action,
-                goal.x,
-                goal.y,
-                record.known,
-                record.work,
-                record.sent.frames,
-                record.sent.bytes
-            )?;
-        }
-        Ok(())
+    pub fn write(&self, to: impl Write) -> io::Result<()> {
+        let rows = self.records.iter().map(Record::row);
+        record::write(to, FORMAT, &Header::of(self), rows)
     }
 
     /// Reads a trace, and checks that it is whole and that a run can have left it:
@@ -271,9 +94,10 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (header, records) = KIND.read::<Header, _>(from, parse_record, super::digest)?;
+        let (header, lines) = record::read::<Header, Row>(from, FORMAT)?;
         let scenario = header.scenario()?;
-        check(&scenario, &records)?;
+        let mut checked = Checked::new(&scenario);
+        let records = lines.records(|row| checked.take(row))?;
         Ok(Self { scenario, records })
     }
 }
@@ -287,10 +111,6 @@ impl Header {
             (x, y, closure.from, closure.until)
         };
         Self {
-            format: KIND.format.into(),
-            version: KIND.version,
-            digest: trace.digest(),
-            records: trace.records.len(),
             planner: scenario.planner,
             range: scenario.range,
             fov: scenario.fov,
@@ -443,30 +263,4 @@ impl WorldRows {
         let blocked = |cell: Cell| self.rows[cell.y as usize].as_bytes()[cell.x as usize] != b'.';
         Ok(World::from_fn(&self.name, extent, blocked)?)
     }
-}
-
-fn parse_record(line: &str) -> Option<Record> {
-    let mut numbers = line.split(',');
-    let mut next = || numbers.next();
-    let tick = next()?.parse().ok()?;
-    let robot = next()?.parse().ok()?;
-    let at = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
-    let action = next()?.parse().ok()?;
-    let goal = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
-    let known = next()?.parse().ok()?;
-    let work = next()?.parse().ok()?;
-    let sent = Sent {
-        frames: next()?.parse().ok()?,
-        bytes: next()?.parse().ok()?,
-    };
-    next().is_none().then_some(Record {
-        tick,
-        robot,
-        at,
-        action,
-        goal: (goal != NOWHERE).then_some(goal),
-        known,
-        work,
-        sent,
-    })
 }

@@ -5,52 +5,24 @@ use std::io::BufRead;
 
 use planner_core::surface::Height;
 use planner_core::survey::Limits;
-use planner_core::{Cell, Extent, Point, Stop};
-use serde::Deserialize;
+use planner_core::{Cell, Extent, Point};
 
-use super::{Deed, KIND, Record, Trace, digest};
+use super::{FORMAT, Header, Heights, NOWHERE, Record, Row, Trace};
 use crate::fleet::Sent;
-use crate::medium::MediumKind;
+use crate::record::{self, Deed, Objection, Order, Reason, TraceError, wrong};
 use crate::survey::terrain_file::LARGEST;
-use crate::survey::{Kill, Planner, Scenario, Terrain, look};
-use crate::trace::TraceError;
+use crate::survey::{Kill, Scenario, Terrain, look};
 
 /// Steps of the longest run that is read: a step without a record is one in which all
 /// robots slept, and a file may claim any number of them.
 const MOST_STEPS: u32 = 10_000_000;
 
+/// Two actions that version 1 had the other way round.
+const UNSEEN: u8 = Reason::Unseen.action();
+const ENCLOSED: u8 = Reason::Enclosed.action();
+
 /// Rounding that a position may be beyond the box by.
 const TOLERANCE: f32 = 1e-3;
-
-#[derive(Deserialize)]
-struct Header {
-    planner: Planner,
-    range: f32,
-    step: f32,
-    min_altitude: f32,
-    ceiling: f32,
-    separation: f32,
-    medium: MediumKind,
-    byte_budget: u16,
-    loss: f64,
-    skip: f64,
-    seed: u64,
-    max_ticks: u32,
-    starts: Vec<[f32; 3]>,
-    /// (robot, step)
-    deaths: Vec<(usize, u32)>,
-    /// Of each robot at the end; older traces have none.
-    #[serde(default)]
-    stops: Vec<Option<Stop>>,
-    world: Heights,
-}
-
-#[derive(Deserialize)]
-struct Heights {
-    name: String,
-    /// In quarters of a cell, row by row.
-    heights: Vec<Vec<u8>>,
-}
 
 impl Trace {
     /// Reads a trace, and checks that it is whole and that each record can be: robots
@@ -62,46 +34,33 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (mut header, mut records) = KIND.read::<Header, _>(from, parse_record, digest)?;
-        complete_stops(&mut records, &std::mem::take(&mut header.stops));
+        let (mut header, lines) = record::read::<Header, Row>(from, FORMAT)?;
+        let stops = std::mem::take(&mut header.stops);
         let mut replay = Replay::new(header)?;
-        let mut last = None;
-        for (record, line) in records.iter().zip(3..) {
-            if let Some(expected) = replay.objection(record, last) {
-                return Err(TraceError::Line {
-                    line,
-                    expected,
-                    found: record.to_string(),
-                });
-            }
-            last = Some(record);
-        }
+        let mut order = Order {
+            robots: replay.at.len(),
+            end: replay.trace.scenario.max_ticks.min(MOST_STEPS),
+            last: None,
+        };
+        let version = lines.version;
+        let records = lines.records(|row| {
+            order.take(row.tick, row.robot)?;
+            replay.record(row, version)
+        })?;
         for step in records.chunk_by(|a, b| a.tick == b.tick) {
             replay.step(step);
         }
         let mut trace = replay.finish(records.last().map_or(0, |last| last.tick + 1));
+        for (robot, stop) in (0..).zip(&mut trace.stops) {
+            let last = records.iter().rev().find(|record| record.robot == robot);
+            let Some(Deed::Stopped(reason)) = last.map(|record| record.deed) else {
+                continue;
+            };
+            let named = stops.get(usize::from(robot)).copied().flatten();
+            *stop = named.filter(|&stop| Reason::from(stop) == reason);
+        }
         trace.records = records;
         Ok(trace)
-    }
-}
-
-/// A record has only the number of a reason; the header has what each robot's last one
-/// names.
-fn complete_stops(records: &mut [Record], stops: &[Option<Stop>]) {
-    for (robot, stop) in (0u8..).zip(stops) {
-        let mut last = records
-            .iter_mut()
-            .rev()
-            .filter(|record| record.robot == robot);
-        if let (Some(stop), Some(last)) = (stop, last.next()) {
-            let whole = Record {
-                deed: Deed::Stopped(*stop),
-                ..*last
-            };
-            if whole.action() == last.action() {
-                *last = whole;
-            }
-        }
     }
 }
 
@@ -172,43 +131,65 @@ impl Replay {
         format!("the box from 0,0,0 to {width},{height},{ceiling}")
     }
 
-    /// What should stand in a record, if something else does.
-    fn objection(&self, record: &Record, last: Option<&Record>) -> Option<String> {
+    /// The record in a row.
+    ///
+    /// # Errors
+    /// What no run leaves.
+    fn record(&self, row: Row, version: u32) -> Result<Record, Objection> {
         let Trace {
             scenario, extent, ..
         } = &self.trace;
-        let (robot, robots) = (usize::from(record.robot), self.at.len());
-        let steps = scenario.max_ticks.min(MOST_STEPS);
-        let place = |record: &Record| (record.tick, record.robot);
+        let action = match (version, row.action) {
+            (1, UNSEEN) => ENCLOSED,
+            (1, ENCLOSED) => UNSEEN,
+            (_, action) => action,
+        };
+        let deed = Deed::of_action(action).ok_or_else(|| wrong(Deed::actions(), row.action))?;
+        let goal = Cell::new(row.goal_x, row.goal_y);
+        let record = Record {
+            tick: row.tick,
+            robot: row.robot,
+            at: Point {
+                x: row.x,
+                y: row.y,
+                z: row.z,
+            },
+            deed,
+            goal: (goal != NOWHERE).then_some(goal),
+            gain: row.gain,
+            known: row.known,
+            work: row.work,
+            sent: Sent {
+                frames: row.frames,
+                bytes: row.bytes,
+            },
+        };
+        let robot = usize::from(record.robot);
         let dies = |kill: &&Kill| kill.robot == robot && kill.step <= record.tick;
-        if robot >= robots {
-            return Some(format!("a robot from 0 to {}", robots - 1));
-        }
-        if record.tick >= steps {
-            return Some(format!("a step before {steps}"));
-        }
-        if last.is_some_and(|last| place(last) >= place(record)) {
-            return Some(
-                "a later step, or a later robot of the same, than in the line before".into(),
-            );
-        }
         if let Some(kill) = scenario.kills.iter().find(dies) {
-            return Some(format!(
+            let expected = format!(
                 "a robot that lives; robot {robot} dies before step {}",
                 kill.step
-            ));
+            );
+            return Err(wrong(expected, format!("tick {}", record.tick)));
         }
         if !self.is_in_box(record.at) {
-            return Some(format!("a position in {}", self.the_box()));
+            let Point { x, y, z } = record.at;
+            let expected = format!("a position in {}", self.the_box());
+            return Err(wrong(expected, format!("{x},{y},{z}")));
         }
-        if record.target.is_some_and(|target| !extent.contains(target)) {
-            return Some(format!("a goal in the {extent} columns, or -1,-1 for none"));
+        if let Some(goal) = record.goal.filter(|&goal| !extent.contains(goal)) {
+            let expected = format!("a goal in the {extent} columns, or -1,-1 for none");
+            return Err(wrong(expected, goal));
         }
         if !record.gain.is_finite() {
-            return Some("a finite gain".into());
+            return Err(wrong("a finite gain", record.gain));
         }
-        let all = extent.cells();
-        (record.known > all).then(|| format!("at most {all} known columns"))
+        if record.known > extent.cells() {
+            let expected = format!("at most {} known columns", extent.cells());
+            return Err(wrong(expected, record.known));
+        }
+        Ok(record)
     }
 
     /// One step of the fleet.
@@ -296,88 +277,25 @@ impl Heights {
     }
 }
 
-fn parse_record(line: &str) -> Option<Record> {
-    let mut numbers = line.split(',');
-    let mut next = || numbers.next();
-    let tick = next()?.parse().ok()?;
-    let robot = next()?.parse().ok()?;
-    let mut coordinate = || next()?.parse().ok().filter(|at: &f32| at.is_finite());
-    let at = Point {
-        x: coordinate()?,
-        y: coordinate()?,
-        z: coordinate()?,
-    };
-    let deed = match next()? {
-        "0" => Deed::Flew,
-        "1" => Deed::Refused,
-        "2" => Deed::Hovered,
-        number => Deed::Stopped(stop_of(number, at.cell())?),
-    };
-    let target = Cell::new(next()?.parse().ok()?, next()?.parse().ok()?);
-    let record = Record {
-        tick,
-        robot,
-        at,
-        deed,
-        target: (target != Cell::new(-1, -1)).then_some(target),
-        gain: next()?.parse().ok()?,
-        known: next()?.parse().ok()?,
-        work: next()?.parse().ok()?,
-        sent: Sent {
-            frames: next()?.parse().ok()?,
-            bytes: next()?.parse().ok()?,
-        },
-    };
-    next().is_none().then_some(record)
-}
-
-/// The reason with this number. How many frontiers were left, and where, is not in a
-/// record.
-fn stop_of(number: &str, at: Cell) -> Option<Stop> {
-    let frontiers = 0;
-    Some(match number {
-        "32" => Stop::Complete,
-        "33" => Stop::Unseen { frontiers, at },
-        "34" => Stop::Blocked { frontiers, at },
-        "37" => Stop::AtEdge { cells: 0 },
-        "38" => Stop::OutOfReach { frontiers },
-        "39" => Stop::Enclosed { frontiers },
-        "40" => Stop::Held { frontiers, at },
-        _ => return None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::survey::run;
+    use planner_core::Stop;
 
-    /// Every reason has one number, and keeps it.
+    use super::*;
+    use crate::medium::MediumKind;
+    use crate::survey::{Planner, run};
+
+    /// The first version had two reasons the other way round.
     #[test]
-    fn a_stop_is_read_as_it_was_written() {
-        let (frontiers, at) = (0, Cell::new(3, 4));
-        for stop in [
-            Stop::Complete,
-            Stop::Unseen { frontiers, at },
-            Stop::Blocked { frontiers, at },
-            Stop::AtEdge { cells: 0 },
-            Stop::OutOfReach { frontiers },
-            Stop::Enclosed { frontiers },
-            Stop::Held { frontiers, at },
-        ] {
-            let record = Record {
-                tick: 0,
-                robot: 0,
-                at: Point::over(at, 5.0),
-                deed: Deed::Stopped(stop),
-                target: None,
-                gain: 0.0,
-                known: 0,
-                work: 0,
-                sent: Sent::default(),
-            };
-            let number = record.action().to_string();
-            assert_eq!(stop_of(&number, at), Some(stop), "{number}");
+    fn the_reasons_of_version_1_are_read_as_they_were_meant() {
+        let mut trace = trace(Planner::Fcao);
+        for (old, reason) in [(33, Reason::Unseen), (39, Reason::Enclosed)] {
+            let last = trace.records.last_mut().unwrap();
+            last.deed = Deed::of_action(old).unwrap();
+            let file = text(&trace).replacen("\"version\":2", "\"version\":1", 1);
+            let read = Trace::read(file.as_bytes()).unwrap();
+            let last = read.records.last().unwrap();
+            assert_eq!(last.deed, Deed::Stopped(reason));
         }
     }
 
@@ -390,12 +308,11 @@ mod tests {
             at: Cell::new(2, 3),
         };
         for record in trace.records.iter_mut().rev().take(3) {
-            record.deed = Deed::Stopped(stop);
+            record.deed = Deed::Stopped(stop.into());
+            trace.stops[usize::from(record.robot)] = Some(stop);
         }
         let read = Trace::read(text(&trace).as_bytes()).unwrap();
-        for robot in 0..3 {
-            assert_eq!(read.stop(robot), trace.stop(robot));
-        }
+        assert_eq!(read.stops, trace.stops);
         assert_eq!(text(&read), text(&trace));
         // As older traces are.
         let start = text(&trace).find("\"stops\"").unwrap();
@@ -449,7 +366,7 @@ mod tests {
         for (from, to, reason) in [
             ("\n0,1,", "\n0,one,", "line 4"),
             ("\n0,1,", "\n0,2,", "digest"),
-            ("\"version\":1", "\"version\":9", "version 9"),
+            ("\"version\":2", "\"version\":9", "version 9"),
             ("\"starts\":[[", "\"starts\":[[],[", "line 1"),
             ("\"range\":8.0", "\"range\":1e9", "range"),
             ("\"step\":2.0", "\"step\":0.0", "step"),
@@ -482,11 +399,12 @@ mod tests {
         }
         refused(&|it| it.at.z = 41.0, "a position");
         refused(&|it| it.at.z = -1.0, "a position");
-        refused(&|it| it.at.z = f32::NAN, "13 numbers");
+        refused(&|it| it.at.z = f32::NAN, "a position");
         refused(&|it| it.robot = 3, "a robot from 0 to 2");
-        refused(&|it| it.tick = u32::MAX, "a step before 20000");
-        refused(&|it| it.tick = 0, "a later step");
-        refused(&|it| it.target = Some(Cell::new(24, 0)), "a goal in");
+        refused(&|it| it.tick = u32::MAX, "a tick before 20000");
+        refused(&|it| it.tick = 0, "ticks in order");
+        refused(&|it| it.robot = 0, "once a tick, in order");
+        refused(&|it| it.goal = Some(Cell::new(24, 0)), "a goal in");
         refused(&|it| it.gain = f32::INFINITY, "a finite gain");
         refused(&|it| it.known = 577, "at most 576 known columns");
 
@@ -504,6 +422,6 @@ mod tests {
         long.scenario.max_ticks = u32::MAX;
         long.records.last_mut().unwrap().tick = u32::MAX - 1;
         let error = Trace::read(text(&long).as_bytes()).unwrap_err().to_string();
-        assert!(error.contains("a step before 10000000"), "{error}");
+        assert!(error.contains("a tick before 10000000"), "{error}");
     }
 }

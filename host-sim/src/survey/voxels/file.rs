@@ -1,43 +1,38 @@
 //! Traces of runs among voxels as files.
 //!
-//! A trace file is text. Line 1 is a JSON object, the *header*: the scenario, the scene
-//! as rows of `#` occupied and `.` free, level by level from below, whether every robot
-//! had stopped and why each had, the number of records and their digest. Line 2 names the columns; every
-//! further line is one record: where a robot decided, and the work of that.
-//!
-//! The digest is the first 16 hex digits of the SHA-256 of the file without its header.
+//! They are as [`record`](crate::record) says; the header holds the scenario, the scene as
+//! rows of `#` occupied and `.` free, level by level from below, where the robots started,
+//! whether every one had stopped and why each had; the columns are the fields of a
+//! [`Record`].
 
 use std::collections::HashSet;
-use std::fmt::{self, Write as _};
 use std::io::{self, BufRead};
 
 use planner_core::volume::Voxel;
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use super::run::{Scenario, VoxelTrace, look, visible};
 use super::scene::{LARGEST, LEVELS, Scene};
 use crate::fleet::Sent;
+use crate::record::{self, Deed, Format, Objection, Order, TraceError, wrong};
 use crate::survey::error::SurveyError;
-use crate::trace::{Kind, TraceError, hex_digits};
 
-const KIND: Kind = Kind {
-    format: "host-sim voxel trace",
-    version: 1,
-    columns: &["tick", "robot", "x", "y", "z", "work"],
+const FORMAT: Format = Format {
+    name: "host-sim voxel trace",
+    version: 2,
+    oldest: 2,
 };
+
+/// Most steps without a record, all together.
+const MOST_EMPTY_STEPS: u32 = 10_000;
 
 #[derive(Serialize, Deserialize)]
 struct Header {
-    format: String,
-    version: u32,
-    digest: String,
-    records: usize,
     scenario: Scenario,
+    starts: Vec<[i16; 3]>,
     all_stopped: bool,
-    /// Of each robot at the end; older traces have none.
-    #[serde(default)]
+    /// Of each robot at the end.
     stops: Vec<Option<Stop<Voxel>>>,
     world: Levels,
 }
@@ -49,18 +44,98 @@ struct Levels {
 }
 
 /// One decision of one robot.
-#[derive(Clone, Copy)]
-struct Record {
-    tick: usize,
-    robot: usize,
-    at: Voxel,
-    work: u32,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// In which step, from 0.
+    pub tick: u32,
+    /// Whose.
+    pub robot: u8,
+    /// Where the robot is after it.
+    pub at: Voxel,
+    /// What became of it; in the file and the digest a number as in traces over heights.
+    pub deed: Deed,
+    /// The pose that it announces; in the file and the digest -1, -1, -1 for none.
+    pub goal: Option<Voxel>,
+    /// Voxels on its map.
+    pub known: u32,
+    /// Work of the decision, as the planner counts it.
+    pub work: u32,
+    /// What it sent by radio in this step.
+    pub sent: Sent,
 }
 
-impl fmt::Display for Record {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Voxel { x, y, z } = self.at;
-        write!(f, "{},{},{x},{y},{z},{}", self.tick, self.robot, self.work)
+record::row!(
+    /// A record in the file.
+    Row {
+        tick: u32,
+        robot: u8,
+        x: i16,
+        y: i16,
+        z: i16,
+        action: u8,
+        goal_x: i16,
+        goal_y: i16,
+        goal_z: i16,
+        known: u32,
+        work: u32,
+        frames: u32,
+        bytes: u32,
+    }
+);
+
+const NOWHERE: Voxel = Voxel::new(-1, -1, -1);
+
+impl Record {
+    fn row(&self) -> Row {
+        let goal = self.goal.unwrap_or(NOWHERE);
+        Row {
+            tick: self.tick,
+            robot: self.robot,
+            x: self.at.x,
+            y: self.at.y,
+            z: self.at.z,
+            action: self.deed.action(),
+            goal_x: goal.x,
+            goal_y: goal.y,
+            goal_z: goal.z,
+            known: self.known,
+            work: self.work,
+            frames: self.sent.frames,
+            bytes: self.sent.bytes,
+        }
+    }
+
+    /// The record in a row.
+    ///
+    /// # Errors
+    /// What no run in `scene` leaves.
+    fn of(row: Row, scene: &Scene) -> Result<Self, Objection> {
+        let place = |name: &str, voxel: Voxel| match scene.is_occupied(voxel) {
+            Some(_) => Ok(voxel),
+            None => {
+                let Voxel { x, y, z } = voxel;
+                Err(wrong(
+                    format!("{name} in the scene"),
+                    format!("{x},{y},{z}"),
+                ))
+            }
+        };
+        let deed = Deed::of_action(row.action).ok_or_else(|| wrong(Deed::actions(), row.action))?;
+        let goal = Some(Voxel::new(row.goal_x, row.goal_y, row.goal_z));
+        let goal = goal.filter(|&goal| goal != NOWHERE);
+        Ok(Self {
+            tick: row.tick,
+            robot: row.robot,
+            at: place("a position", Voxel::new(row.x, row.y, row.z))?,
+            deed,
+            goal: goal.map(|goal| place("a goal", goal)).transpose()?,
+            known: row.known,
+            work: row.work,
+            sent: Sent {
+                frames: row.frames,
+                bytes: row.bytes,
+            },
+        })
     }
 }
 
@@ -69,19 +144,17 @@ impl VoxelTrace {
     ///
     /// # Errors
     /// Those of `to`.
-    pub fn write(&self, mut to: impl io::Write) -> io::Result<()> {
+    pub fn write(&self, to: impl io::Write) -> io::Result<()> {
+        let starts = self.ways.iter().map(|way| way[0]);
         let header = Header {
-            format: KIND.format.into(),
-            version: KIND.version,
-            digest: self.digest(),
-            records: self.work.len(),
             scenario: self.scenario.clone(),
+            starts: starts.map(|Voxel { x, y, z }| [x, y, z]).collect(),
             all_stopped: self.all_stopped,
             stops: self.stops.clone(),
             world: Levels::of(&self.scene),
         };
-        serde_json::to_writer(&mut to, &header)?;
-        write!(to, "\n{}", text(self.records()))
+        let rows = self.records.iter().map(Record::row);
+        record::write(to, FORMAT, &header, rows)
     }
 
     /// Reads a trace, and checks that it is whole.
@@ -91,47 +164,56 @@ impl VoxelTrace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let digest = |records: &[Record]| digest(records.iter().copied());
-        let (header, records) = KIND.read::<Header, _>(from, Record::parse, digest)?;
+        let (header, lines) = record::read::<Header, Row>(from, FORMAT)?;
         let (scene, scenario) = (header.world.scene()?, header.scenario);
         let checked = scenario.check(&scene);
         checked.map_err(|error| TraceError::Survey(error.to_string()))?;
         let robots = scenario.robots;
-        let in_order = |(i, record): (usize, &Record)| {
-            (record.tick, record.robot) == (i / robots, i % robots)
-                && scene.is_occupied(record.at).is_some()
+        let of_robots = |what, count| match count == robots {
+            true => Ok(()),
+            false => Err(TraceError::Survey(format!(
+                "{robots} robots do not have {count} {what}"
+            ))),
         };
-        if records.len() < robots || !records.len().is_multiple_of(robots) {
-            let reason = format!("{robots} robots do not have {} records", records.len());
-            return Err(TraceError::Survey(reason));
+        of_robots("starts", header.starts.len())?;
+        of_robots("ends", header.stops.len())?;
+        let starts = header.starts.into_iter();
+        let starts: Vec<_> = starts.map(|[x, y, z]| Voxel::new(x, y, z)).collect();
+        if starts.iter().any(|&at| scene.is_occupied(at).is_none()) {
+            return Err(TraceError::Survey(
+                "a robot starts outside of the scene".into(),
+            ));
         }
-        if let Some(i) = records.iter().enumerate().position(|it| !in_order(it)) {
-            return Err(TraceError::Line {
-                line: i + 3,
-                expected: format!("robot {} in tick {}, in the scene", i % robots, i / robots),
-                found: records[i].to_string(),
-            });
-        }
+        let mut order = Order {
+            robots,
+            end: scenario.max_ticks.saturating_add(1),
+            last: None,
+        };
+        let mut empty_steps = 0u32;
+        let records = lines.records(|row| {
+            let next = order.last.map_or(0, |(last, _)| last.saturating_add(1));
+            order.take(row.tick, row.robot)?;
+            empty_steps = empty_steps.saturating_add(row.tick.saturating_sub(next));
+            if empty_steps > MOST_EMPTY_STEPS {
+                let expected = format!("at most {MOST_EMPTY_STEPS} steps without a record");
+                return Err(wrong(expected, format!("tick {}", row.tick)));
+            }
+            Record::of(row, &scene)
+        })?;
         let mut trace = Self {
-            ways: vec![Vec::new(); robots],
-            work: records.iter().map(|record| record.work).collect(),
-            // What was sent is not in the file.
-            sent: vec![Sent::default(); records.len()],
+            ways: starts.into_iter().map(|start| vec![start]).collect(),
+            records,
             found: Vec::new(),
             visible: 0,
             seen: Vec::new(),
             all_stopped: header.all_stopped,
-            stops: {
-                let mut stops = header.stops;
-                stops.resize(robots, None);
-                stops
-            },
+            stops: header.stops,
             violations: 0,
             scenario,
             scene,
         };
-        for record in records {
-            trace.ways[record.robot].push(record.at);
+        if trace.records.is_empty() {
+            return Err(TraceError::Survey("there is no record".into()));
         }
         trace.look_again();
         match trace.visible {
@@ -140,25 +222,42 @@ impl VoxelTrace {
         }
     }
 
-    /// What was seen, and what should not have been flown, follows from the ways.
+    /// The ways, what was seen, and what should not have been flown, follow from the
+    /// records.
     fn look_again(&mut self) {
         let (scene, range) = (&self.scene, self.scenario.range);
         let visible = visible(scene, self.ways[0][0], range);
         let mut known = HashSet::new();
         let mut looked = HashSet::new();
         let mut seen = 0;
-        for tick in 0..self.ways[0].len() {
-            for at in self.ways.iter().map(|way| way[tick]) {
+        let mut at: Vec<Voxel> = self.ways.iter().map(|way| way[0]).collect();
+        let steps = self.records.last().map_or(0, |last| last.tick + 1);
+        let mut rest = &self.records[..];
+        for tick in 0..steps {
+            let of_step = rest.iter().take_while(|record| record.tick == tick).count();
+            let (records, later) = rest.split_at(of_step);
+            rest = later;
+            for record in records {
+                let at = at[usize::from(record.robot)];
                 // Who looks from the same place sees the same.
                 let view = looked.insert(at).then(|| look(scene, at, range));
                 for (voxel, occupied) in view.into_iter().flatten() {
                     if known.insert(voxel) {
-                        self.found.push((tick as u32, voxel, occupied));
+                        self.found.push((tick, voxel, occupied));
                         seen += u32::from(visible.contains(&voxel));
                     }
                 }
             }
             self.seen.push(seen);
+            for record in records {
+                at[usize::from(record.robot)] = record.at;
+            }
+            // In the last step nobody flies on.
+            if tick + 1 < steps {
+                for (way, &at) in self.ways.iter_mut().zip(&at) {
+                    way.push(at);
+                }
+            }
         }
         let legs = self.ways.iter().flat_map(|way| way.windows(2));
         let is_allowed =
@@ -167,53 +266,9 @@ impl VoxelTrace {
         self.visible = visible.len() as u32;
     }
 
-    fn records(&self) -> impl Iterator<Item = Record> + '_ {
-        let robots = self.ways.len();
-        self.work.iter().enumerate().map(move |(i, &work)| {
-            let (tick, robot) = (i / robots, i % robots);
-            Record {
-                tick,
-                robot,
-                at: self.ways[robot][tick],
-                work,
-            }
-        })
-    }
-
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        digest(self.records())
-    }
-}
-
-/// The file without its header.
-fn text(records: impl Iterator<Item = Record>) -> String {
-    let mut text = format!("{}\n", KIND.columns.join(","));
-    for record in records {
-        writeln!(text, "{record}").expect("a String takes everything");
-    }
-    text
-}
-
-fn digest(records: impl Iterator<Item = Record>) -> String {
-    hex_digits(Sha256::new_with_prefix(text(records)))
-}
-
-impl Record {
-    fn parse(line: &str) -> Option<Self> {
-        let mut numbers = line.split(',');
-        let mut next = || numbers.next();
-        let record = Self {
-            tick: next()?.parse().ok()?,
-            robot: next()?.parse().ok()?,
-            at: Voxel::new(
-                next()?.parse().ok()?,
-                next()?.parse().ok()?,
-                next()?.parse().ok()?,
-            ),
-            work: next()?.parse().ok()?,
-        };
-        next().is_none().then_some(record)
+        record::digest(self.records.iter().map(Record::row))
     }
 }
 
@@ -332,15 +387,14 @@ mod tests {
         for (from, to, reason) in [
             ("\n0,1,", "\n0,one,", "line 4"),
             ("\n0,1,", "\n0,2,", "digest"),
-            ("\"version\":1", "\"version\":9", "version 9"),
+            ("\"version\":2", "\"version\":9", "version 9"),
             ("\"robots\":2", "\"robots\":0", "--robots 0"),
             ("\"robots\":2", "\"robots\":4000000000", "1 to 255"),
             ("\"loss\":0.3", "\"loss\":3.0", "--loss 3"),
             ("\"range\":6", "\"range\":1", "2 to 12"),
             ("\"levels\":[[\"#", "\"levels\":[[\"?", "neither"),
             ("\"robots\":2", "\"robots\":5", "5 robots"),
-            ("\"robots\":2", "\"robots\":3", "line 5"),
-            ("\"robots\":2", "\"robots\":1", "line 4"),
+            ("\"starts\":[[2,", "\"starts\":[[-2,", "starts outside"),
             ("\"range\":6", "\"range\":200", "range"),
             ("\"levels\":[[\"", "\"levels\":[[\"#", "levels of the scene"),
         ] {

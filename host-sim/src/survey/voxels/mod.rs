@@ -4,5 +4,6 @@ mod file;
 mod run;
 mod scene;
 
+pub use file::Record;
 pub use run::{Scenario, Simulation, VoxelTrace, look, run};
 pub use scene::Scene;

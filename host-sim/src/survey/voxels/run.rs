@@ -8,10 +8,12 @@ use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Point, Stop};
 
+use super::file::Record;
 use super::scene::{LARGEST, LEVELS, Scene};
 use crate::dice::Dice;
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
+use crate::record::Deed;
 use crate::survey::DEFAULT_BYTE_BUDGET;
 use crate::survey::draw::{Block, oblique};
 use crate::survey::error::{SurveyError, check_robots, check_share};
@@ -92,10 +94,8 @@ pub struct VoxelTrace {
     pub scene: Scene,
     /// Where each robot was, step by step from its start.
     pub ways: Vec<Vec<Voxel>>,
-    /// Work of each decision.
-    pub work: Vec<u32>,
-    /// What each robot sent in the step of each decision.
-    pub sent: Vec<Sent>,
+    /// Every decision, in order.
+    pub records: Vec<Record>,
     /// Voxels in the order in which they were seen, each with the step and with whether
     /// it is occupied.
     pub found: Vec<(u32, Voxel, bool)>,
@@ -199,8 +199,7 @@ impl Simulation {
             scenario: scenario.clone(),
             scene: scene.clone(),
             ways: vec![vec![start]; scenario.robots],
-            work: Vec::new(),
-            sent: Vec::new(),
+            records: Vec::new(),
             found: Vec::new(),
             visible: visible.len() as u32,
             seen: Vec::new(),
@@ -281,11 +280,13 @@ impl Simulation {
         for (i, sent) in sent.iter_mut().enumerate() {
             let at = *trace.ways[i].last().expect("as above");
             let action = robots[i].tick();
-            trace.work.push(robots[i].work());
-            let (to, stop) = match action {
-                Action::Fly(to) => (to, None),
-                Action::Hover => (at, None),
-                Action::Stop(stop) => (at, Some(stop)),
+            let work = robots[i].work();
+            let (to, deed, stop) = match action {
+                // The run is given up before it flies.
+                Action::Fly(_) if *now >= scenario.max_ticks => (at, Deed::Hovered, None),
+                Action::Fly(to) => (to, Deed::Flew, None),
+                Action::Hover => (at, Deed::Hovered, None),
+                Action::Stop(stop) => (at, Deed::Stopped(stop.into()), Some(stop)),
             };
             going |= stop.is_none();
             trace.stops[i] = stop;
@@ -296,8 +297,17 @@ impl Simulation {
                 MediumKind::Ideal => medium.share_status(robots, i),
                 MediumKind::Radio => medium.transmit(robots, i, 1, sent),
             }
+            trace.records.push(Record {
+                tick: *now,
+                robot: i as u8,
+                at: to,
+                deed,
+                goal: robots[i].status().goal,
+                known: robots[i].volume().known_voxels(),
+                work,
+                sent: *sent,
+            });
         }
-        trace.sent.append(&mut sent);
         trace.all_stopped = !going;
         if !going || *now >= scenario.max_ticks {
             return false;

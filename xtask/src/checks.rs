@@ -30,6 +30,7 @@ const CHECKS: &[Check] = &[
                 "clippy",
                 "--workspace",
                 "--all-targets",
+                "--features=host-sim/parquet",
                 "--locked",
                 "--",
                 "-Dwarnings",
@@ -86,10 +87,15 @@ const CHECKS: &[Check] = &[
         name: "doc",
         title: "the documentation builds without warnings",
         run: || {
-            cargo(["doc", "--workspace", "--no-deps"])
-                .env("RUSTDOCFLAGS", "-Dwarnings")
-                .run()
-                .map(nothing)
+            cargo([
+                "doc",
+                "--workspace",
+                "--no-deps",
+                "--features=host-sim/parquet",
+            ])
+            .env("RUSTDOCFLAGS", "-Dwarnings")
+            .run()
+            .map(nothing)
         },
     },
     Check {

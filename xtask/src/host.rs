@@ -10,7 +10,12 @@ use anyhow::Result;
 
 use crate::shell::{Command, cargo, root};
 
-const WAY: [&str; 3] = ["--workspace", "--no-default-features", "--locked"];
+const WAY: [&str; 4] = [
+    "--workspace",
+    "--no-default-features",
+    "--features=host-sim/parquet",
+    "--locked",
+];
 
 /// `cargo test`, for whatever tests are then chosen.
 pub(crate) fn test() -> Command {

@@ -7,10 +7,9 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
-use host_sim::draw::DrawError;
 use host_sim::experiments::{
     Journal, Key, Metric, Place, Plan, Row, Shard, Site, compare, comparisons_csv, execute,
-    markdown, to_csv, write_parquet,
+    markdown, to_csv,
 };
 use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
@@ -81,6 +80,10 @@ pub(crate) struct Compare {
     /// shards that are in the folder.
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: Shard,
+    /// Write the runs as a Parquet file too; for programs compiled with
+    /// `--features parquet`.
+    #[arg(long)]
+    parquet: bool,
     /// Keep the runs that are in the folder, and do those that are missing.
     #[arg(long)]
     resume: bool,
@@ -105,6 +108,15 @@ fn parse_families(text: &str) -> Result<Families, String> {
 
 impl Compare {
     pub(crate) fn run(self) -> Done {
+        if self.parquet && !cfg!(feature = "parquet") {
+            let arguments: Vec<String> = std::env::args().skip(1).collect();
+            return Err(format!(
+                "--parquet was left out of this program; run `cargo run --release --features \
+                 parquet -- {}`",
+                arguments.join(" ")
+            )
+            .into());
+        }
         let plan = self.plan()?;
         let journal = Journal::open(&self.out, self.shard, self.resume)?;
         let done: HashSet<Key> = match self.resume {
@@ -124,7 +136,12 @@ impl Compare {
         let table = markdown(&comparisons, self.reference, self.metric);
         let mut folder = Folder::open(self.out.clone())?;
         folder.write("runs.csv", |file| Ok(file.write_all(&to_csv(&rows, true))?))?;
-        folder.write("runs.parquet", |file| Ok(file.write_all(&parquet(&rows)?)?))?;
+        #[cfg(feature = "parquet")]
+        if self.parquet {
+            let mut bytes = Vec::new();
+            host_sim::experiments::write_parquet(&rows, &mut bytes)?;
+            folder.write("runs.parquet", |file| Ok(file.write_all(&bytes)?))?;
+        }
         folder.write("table.md", |file| Ok(file.write_all(table.as_bytes())?))?;
         folder.write("table.csv", |file| {
             let csv = comparisons_csv(&comparisons, self.metric);
@@ -209,10 +226,4 @@ impl Compare {
 fn in_order_of(plan: &Plan, rows: Vec<Row>) -> Vec<Row> {
     let mut rows: HashMap<Key, Row> = rows.into_iter().map(|row| (row.key(), row)).collect();
     plan.keys().filter_map(|key| rows.remove(&key)).collect()
-}
-
-fn parquet(rows: &[Row]) -> Result<Vec<u8>, DrawError> {
-    let mut bytes = Vec::new();
-    write_parquet(rows, &mut bytes).map_err(std::io::Error::other)?;
-    Ok(bytes)
 }

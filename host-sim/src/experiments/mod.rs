@@ -11,6 +11,7 @@ mod execute;
 pub mod figures;
 pub mod ghosts;
 mod journal;
+#[cfg(feature = "parquet")]
 mod parquet;
 mod plan;
 mod row;
@@ -19,6 +20,7 @@ mod table;
 
 pub use execute::{ExecuteError, Shard, execute};
 pub use journal::{Journal, JournalError, to_csv};
+#[cfg(feature = "parquet")]
 pub use parquet::write_parquet;
 pub use plan::{Place, Plan, Setup, Site};
 pub use row::{Key, Metric, Row};

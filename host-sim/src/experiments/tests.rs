@@ -132,6 +132,7 @@ fn pairs_are_of_the_same_run_and_leave_out_what_is_not_complete() {
     assert!(comparisons_csv(&comparisons, Metric::Seen).lines().count() == comparisons.len() + 1);
 }
 
+#[cfg(feature = "parquet")]
 #[test]
 fn a_parquet_file_has_the_columns_and_rows_of_the_csv() {
     use ::parquet::file::reader::{FileReader, SerializedFileReader};

@@ -89,7 +89,8 @@ fn trace(bytes: &[u8]) {
             Ok(trace) => {
                 if trace.ticks() < 100 && trace.scenario.world.extent().cells() < 1_000 {
                     draw::animation(&trace, std::io::sink()).expect("a sink takes everything");
-                    draw::coverage_csv(&trace, std::io::sink()).expect("a sink takes everything");
+                    let coverage = draw::Coverage::from(&trace);
+                    coverage.write_csv(std::io::sink()).expect("a sink takes everything");
                 }
                 return;
             }

@@ -3,6 +3,7 @@
 //! behind it is reached.
 #![no_main]
 
+use host_sim::draw;
 use host_sim::survey::octree::OcTree;
 use host_sim::survey::voxels::{self, Scene, VoxelTrace};
 use host_sim::survey::{self, Kill, Planner, Scenario, Summary, Terrain, Trace};
@@ -63,8 +64,8 @@ fn heights<E>(read: Result<Trace, E>) {
     let summary = Summary::new(&trace);
     assert!(summary.seen_cells <= summary.reachable_cells);
     let ticks = trace.seen.len() as u32;
-    let _ = survey::draw::oblique_view(&trace, ticks / 2);
-    let _ = survey::draw::top_view(&trace, ticks);
+    let _ = draw::oblique_view(&trace, ticks / 2);
+    let _ = draw::top_view(&trace, ticks);
     let _ = survey::octree(&trace, ticks);
     let mut file = Vec::new();
     trace.write(&mut file).unwrap();

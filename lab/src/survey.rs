@@ -7,8 +7,8 @@ mod setup;
 mod voxels;
 
 use egui::{Sense, Shape, Stroke, Ui};
+use host_sim::draw::write_png;
 use host_sim::survey::Trace;
-use host_sim::survey::draw::write_png;
 use host_sim::survey::voxels::VoxelTrace;
 
 use crate::colors::{Colors, mix};

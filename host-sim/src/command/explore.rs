@@ -8,7 +8,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::Args;
-use host_sim::draw;
+use host_sim::draw::{self, Coverage};
 use host_sim::measured::Measured;
 use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
@@ -159,8 +159,7 @@ impl Explore {
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
         folder.write("explored.png", |file| draw::picture(&trace, file))?;
         folder.write("explored.gif", |file| draw::animation(&trace, file))?;
-        folder.write("coverage.csv", |file| Ok(draw::coverage_csv(&trace, file)?))?;
-        folder.write("coverage.png", |file| draw::coverage_plot(&trace, file))?;
+        folder.write_coverage(&Coverage::from(&trace))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
 

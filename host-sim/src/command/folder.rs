@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use host_sim::draw::DrawError;
+use host_sim::draw::{Coverage, DrawError};
 use host_sim::files::Draft;
 use thiserror::Error;
 
@@ -57,6 +57,12 @@ impl Folder {
         let file = filled().map_err(|problem| self.error(problem))?;
         self.files.push(file);
         Ok(())
+    }
+
+    /// Prepares what had been seen over time, as a table and as a curve.
+    pub(super) fn write_coverage(&mut self, coverage: &Coverage) -> Result<(), FolderError> {
+        self.write("coverage.csv", |file| Ok(coverage.write_csv(file)?))?;
+        self.write("coverage.png", |file| coverage.write_png(file))
     }
 
     /// Puts all prepared files in place.

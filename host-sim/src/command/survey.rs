@@ -5,10 +5,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
+use host_sim::draw::{Coverage, animate, oblique_view, top_view, write_png};
 use host_sim::medium::MediumKind;
-use host_sim::survey::draw::{
-    animate, animation, coverage_plot, oblique_view, top_view, write_png,
-};
 use host_sim::survey::voxels::{self, Scene, Simulation, VoxelTrace};
 use host_sim::survey::{
     DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, open,
@@ -120,9 +118,11 @@ impl Survey {
         folder.write("oblique.png", |file| {
             write_png(&oblique_view(&trace, all), file)
         })?;
-        folder.write("explored.gif", |file| animation(&trace, file))?;
-        folder.write("coverage.csv", |file| Ok(trace.write_coverage(file)?))?;
-        folder.write("coverage.png", |file| coverage_plot(&trace, file))?;
+        folder.write("explored.gif", |file| {
+            let steps = trace.seen.len() as u32;
+            animate(steps, |step| top_view(&trace, step), file)
+        })?;
+        folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(octree(&trace, all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
@@ -197,6 +197,7 @@ impl Survey {
             let ticks = trace.seen.len() as u32;
             animate(ticks, |tick| trace.oblique_view(tick), file)
         })?;
+        folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;

@@ -2,12 +2,13 @@
 
 use std::io;
 
+use image::RgbImage;
 use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::paint::{INK, robot_color, text};
-use super::{Canvas, DrawError};
+use super::{DrawError, write_png};
 
 /// Charts side by side that share a title and a legend.
 #[derive(Clone, Debug)]
@@ -77,6 +78,14 @@ pub struct Point {
     pub high: f64,
 }
 
+impl Point {
+    /// A value that nobody doubts.
+    pub fn certain(x: f64, y: f64) -> Self {
+        let (low, high) = (f64::NAN, f64::NAN);
+        Self { x, y, low, high }
+    }
+}
+
 const PANEL: (u32, u32) = (620, 400);
 const HEAD: i32 = 44;
 const LEGEND_LINE: i32 = 24;
@@ -103,10 +112,10 @@ impl Chart {
     /// Those of `to`.
     pub fn write_png(&self, to: impl io::Write) -> Result<(), DrawError> {
         let (width, height) = self.size();
-        let mut canvas = Canvas::new(width, height);
+        let mut picture = RgbImage::new(width, height);
         let size = (width, height);
-        self.draw(&BitMapBackend::with_buffer(&mut canvas.pixels, size).into_drawing_area())?;
-        canvas.write_png(to)
+        self.draw(&BitMapBackend::with_buffer(&mut picture, size).into_drawing_area())?;
+        write_png(&picture, to)
     }
 
     fn columns(&self) -> usize {
@@ -152,7 +161,10 @@ impl Chart {
     {
         area.fill(&WHITE)?;
         let width = self.size().0 as i32;
-        area.draw(&Text::new(self.title.as_str(), (24, 14), text(19)))?;
+        // The font is fixed-width, 0.6 of its size a character; a long title shrinks.
+        let room = (width - 48) as u32 * 10 / 6;
+        let size = (room / self.title.chars().count().max(1) as u32).clamp(9, 19);
+        area.draw(&Text::new(self.title.as_str(), (24, 14), text(size)))?;
         for (series, (x, y)) in self.legend(width) {
             let color = robot_color(series.color);
             area.draw(&Rectangle::new(

@@ -1,76 +1,108 @@
-//! Coverage over time, as a table and as a curve.
+//! How much had been seen over time, as a table and as a curve.
 
 use std::io;
 
-use plotters::prelude::*;
-
-use super::paint::{INK, robot_color, text};
+use super::DrawError;
+use super::chart::{Axis, Chart, Panel, Point, Series, Style};
 use super::picture::title;
 use super::replay::Replay;
-use super::{Canvas, DrawError};
+use crate::survey;
+use crate::survey::voxels::VoxelTrace;
 use crate::trace::Trace;
 
-const SIZE: (u32, u32) = (960, 540);
-
-/// Share of the reachable cells that somebody has seen, 0 to 1.
-fn share(replay: &Replay<'_>) -> f64 {
-    f64::from(replay.seen_cells()) / f64::from(replay.reachable_cells().max(1))
+/// What had been seen in a run.
+#[derive(Clone, Debug)]
+pub struct Coverage {
+    /// What was run.
+    pub title: String,
+    /// What is counted, for example `reachable cells`.
+    pub unit: &'static str,
+    /// How many of them there are.
+    pub all: u32,
+    /// How many had been seen, tick by tick.
+    pub seen: Vec<u32>,
 }
 
-/// Writes `tick,seen_cells,seen_share` line by line; the share is of the
-/// reachable cells, 0 to 1.
-///
-/// # Errors
-/// Those of `to`.
-pub fn coverage_csv(trace: &Trace, mut to: impl io::Write) -> io::Result<()> {
-    writeln!(to, "tick,seen_cells,seen_share")?;
-    let mut replay = Replay::new(trace);
-    let mut tick = 0;
-    while replay.tick() {
-        writeln!(to, "{tick},{},{:.6}", replay.seen_cells(), share(&replay))?;
-        tick += 1;
+impl Coverage {
+    fn share(&self, seen: u32) -> f64 {
+        f64::from(seen) / f64::from(self.all.max(1))
     }
-    Ok(())
+
+    /// Writes `tick,seen_cells,seen_share` line by line; the share is from 0 to 1.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write_csv(&self, to: impl io::Write) -> io::Result<()> {
+        let mut table = csv::Writer::from_writer(to);
+        table.write_record(["tick", "seen_cells", "seen_share"])?;
+        for (tick, &seen) in self.seen.iter().enumerate() {
+            let share = format!("{:.6}", self.share(seen));
+            table.write_record([tick.to_string(), seen.to_string(), share])?;
+        }
+        table.flush()
+    }
+
+    /// Writes the curve as PNG.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn write_png(&self, to: impl io::Write) -> Result<(), DrawError> {
+        let point =
+            |(tick, &seen): (usize, &u32)| Point::certain(tick as f64, 100.0 * self.share(seen));
+        let chart = Chart {
+            title: self.title.clone(),
+            panels: vec![Panel {
+                title: String::new(),
+                x: Axis::Numbers("time (ticks)".into()),
+                y: format!("{} seen (%)", self.unit),
+                series: vec![Series {
+                    name: "seen by anybody".into(),
+                    color: 0,
+                    style: Style::Curve,
+                    points: self.seen.iter().enumerate().map(point).collect(),
+                }],
+            }],
+        };
+        chart.write_png(to)
+    }
 }
 
-/// Writes the curve as PNG.
-///
-/// # Errors
-/// Those of `to`.
-pub fn coverage_plot(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
-    let mut replay = Replay::new(trace);
-    let mut points = Vec::new();
-    while replay.tick() {
-        points.push((points.len() as u32, 100.0 * share(&replay)));
+impl From<&Trace> for Coverage {
+    fn from(trace: &Trace) -> Self {
+        let mut replay = Replay::new(trace);
+        let mut seen = Vec::new();
+        while replay.tick() {
+            seen.push(replay.seen_cells());
+        }
+        Self {
+            title: title(trace),
+            unit: "reachable cells",
+            all: replay.reachable_cells(),
+            seen,
+        }
     }
-    let title = title(trace);
-    // The font is fixed-width, 0.6 of its size a character; a long title shrinks.
-    let room = (SIZE.0 - 80) * 10 / 6;
-    let size = (room / title.chars().count().max(1) as u32).clamp(9, 18);
-    let end = trace.ticks().max(2) - 1;
-    let mut canvas = Canvas::new(SIZE.0, SIZE.1);
-    {
-        let area = BitMapBackend::with_buffer(&mut canvas.pixels, SIZE).into_drawing_area();
-        area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(&area)
-            .caption(title, text(size))
-            .margin(20)
-            .x_label_area_size(52)
-            .y_label_area_size(72)
-            .build_cartesian_2d(0..end, 0.0..100.0)?;
-        chart
-            .configure_mesh()
-            .x_desc("time (ticks)")
-            .y_desc("reachable cells seen (%)")
-            .axis_desc_style(text(16))
-            .label_style(text(14))
-            .axis_style(INK.stroke_width(1))
-            .bold_line_style(RGBColor(215, 218, 224).stroke_width(1))
-            .light_line_style(TRANSPARENT)
-            .y_label_formatter(&|percent| format!("{percent:.0}"))
-            .draw()?;
-        chart.draw_series(LineSeries::new(points, robot_color(0).stroke_width(2)))?;
-        area.present()?;
+}
+
+impl From<&survey::Trace> for Coverage {
+    fn from(trace: &survey::Trace) -> Self {
+        let (name, planner) = (trace.terrain.name(), trace.scenario.planner);
+        Self {
+            title: format!("{name}: {} robots, {planner}", trace.robots),
+            unit: "columns",
+            all: trace.extent.cells(),
+            seen: trace.seen.clone(),
+        }
     }
-    canvas.write_png(to)
+}
+
+impl From<&VoxelTrace> for Coverage {
+    fn from(trace: &VoxelTrace) -> Self {
+        let name = trace.scene.name();
+        Self {
+            title: format!("{name}: {} robots, voxel-survey", trace.ways.len()),
+            unit: "visible voxels",
+            all: trace.visible,
+            seen: trace.seen.clone(),
+        }
+    }
 }

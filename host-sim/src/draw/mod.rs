@@ -1,28 +1,34 @@
-//! Pictures of a run, all from its trace: the final picture, the animation, the
-//! coverage curve. In the browser, where there is no font for them, only the animation.
+//! Pictures of a run, all from its trace: the final picture, views from above and aslant,
+//! the animation, the coverage curve. In the browser, where there is no font, those
+//! without words.
 
 mod animation;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod chart;
 #[cfg(not(target_arch = "wasm32"))]
 mod coverage;
+mod oblique;
 mod paint;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
 mod replay;
+mod top;
 
 use std::io;
 
-#[cfg(not(target_arch = "wasm32"))]
-use image::{ColorType, ImageEncoder, codecs::png::PngEncoder};
+use image::codecs::png::PngEncoder;
+use image::{ColorType, ImageEncoder, RgbImage};
 use thiserror::Error;
 
-pub use animation::animation;
+pub use animation::{animate, animation};
 #[cfg(not(target_arch = "wasm32"))]
-pub use coverage::{coverage_csv, coverage_plot};
+pub use coverage::Coverage;
+pub use oblique::oblique_view;
+pub(crate) use oblique::{Block, oblique};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
 pub use replay::Replay;
+pub use top::top_view;
 
 /// A picture that cannot be made.
 #[derive(Debug, Error)]
@@ -49,26 +55,12 @@ impl<E: std::error::Error + Send + Sync> From<plotters::drawing::DrawingAreaErro
     }
 }
 
-/// Pixels, three bytes each, row by row.
-#[cfg(not(target_arch = "wasm32"))]
-struct Canvas {
-    width: u32,
-    height: u32,
-    pixels: Vec<u8>,
-}
-
-#[cfg(not(target_arch = "wasm32"))]
-impl Canvas {
-    fn new(width: u32, height: u32) -> Self {
-        Self {
-            width,
-            height,
-            pixels: vec![255; (width * height * 3) as usize],
-        }
-    }
-
-    fn write_png(&self, to: impl io::Write) -> Result<(), DrawError> {
-        let color = ColorType::Rgb8;
-        Ok(PngEncoder::new(to).write_image(&self.pixels, self.width, self.height, color)?)
-    }
+/// Writes `picture` as PNG.
+///
+/// # Errors
+/// Those of `to`.
+pub fn write_png(picture: &RgbImage, to: impl io::Write) -> Result<(), DrawError> {
+    let (width, height) = picture.dimensions();
+    let color = ColorType::Rgb8;
+    Ok(PngEncoder::new(to).write_image(picture, width, height, color)?)
 }

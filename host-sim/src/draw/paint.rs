@@ -1,8 +1,10 @@
 //! Colours and text.
 
+use std::ops::RangeInclusive;
 #[cfg(not(target_arch = "wasm32"))]
 use std::sync::Once;
 
+use image::{Rgb, RgbImage};
 use plotters::style::RGBColor;
 #[cfg(not(target_arch = "wasm32"))]
 use plotters::style::{FontStyle, IntoFont, TextStyle, register_font};
@@ -60,6 +62,77 @@ pub(super) fn robot_color(robot: usize) -> RGBColor {
 
 /// Robots with a colour of their own.
 pub(super) const ROBOT_COLORS: usize = ROBOTS.len();
+
+/// The same on dark ground, with the yellow and without the black.
+pub(super) fn way_color(robot: usize) -> Rgb<u8> {
+    const WAYS: [Rgb<u8>; 8] = [
+        Rgb([230, 159, 0]),
+        Rgb([86, 180, 233]),
+        Rgb([0, 158, 115]),
+        Rgb([240, 228, 66]),
+        Rgb([0, 114, 178]),
+        Rgb([213, 94, 0]),
+        Rgb([204, 121, 167]),
+        Rgb([120, 120, 120]),
+    ];
+    WAYS[robot % WAYS.len()]
+}
+
+/// What nobody has seen, in views of heights and voxels.
+pub(super) const DARK: Rgb<u8> = Rgb([24, 26, 30]);
+
+/// Colour of ground at height `ground` where the highest is `highest`.
+pub(super) fn shade(ground: f32, highest: f32) -> Rgb<u8> {
+    let share = ground / highest.max(1.0);
+    Rgb([70.0, 78.0, 84.0].map(|dark| (dark + share * 165.0) as u8))
+}
+
+/// Sets a pixel, if it is one of the picture.
+pub(super) fn put(picture: &mut RgbImage, x: f32, y: f32, color: Rgb<u8>) {
+    if x >= 0.0 && y >= 0.0 && (x as u32) < picture.width() && (y as u32) < picture.height() {
+        picture.put_pixel(x as u32, y as u32, color);
+    }
+}
+
+/// Sets the pixels around `(x, y)` whose distance from it, in pixels, is in `radii`.
+pub(super) fn disc(
+    picture: &mut RgbImage,
+    (x, y): (f32, f32),
+    radii: RangeInclusive<f32>,
+    color: Rgb<u8>,
+) {
+    let reach = radii.end().ceil() as i32;
+    for dy in -reach..=reach {
+        for dx in -reach..=reach {
+            if radii.contains(&((dx * dx + dy * dy) as f32).sqrt()) {
+                put(picture, x + dx as f32, y + dy as f32, color);
+            }
+        }
+    }
+}
+
+/// Sets the pixels from one place to another, and those beside them by `pen`.
+pub(super) fn line(
+    picture: &mut RgbImage,
+    (x0, y0): (f32, f32),
+    (x1, y1): (f32, f32),
+    pen: &[(f32, f32)],
+    color: Rgb<u8>,
+) {
+    let length = (x1 - x0).abs().max((y1 - y0).abs()).ceil().max(1.0);
+    for i in 0..=length as u32 {
+        let share = i as f32 / length;
+        let (x, y) = (x0 + (x1 - x0) * share, y0 + (y1 - y0) * share);
+        for (dx, dy) in pen {
+            put(picture, x + dx, y + dy, color);
+        }
+    }
+}
+
+/// A colour of the charts in a picture.
+pub(super) fn rgb(RGBColor(red, green, blue): RGBColor) -> Rgb<u8> {
+    Rgb([red, green, blue])
+}
 
 pub(super) const INK: RGBColor = RGBColor(40, 44, 52);
 

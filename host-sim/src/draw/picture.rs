@@ -2,13 +2,14 @@
 
 use std::io;
 
+use image::{Rgb, RgbImage};
 use planner_core::Cell;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::paint::{Ground, INK, ROBOT_COLORS, robot_color, text};
 use super::replay::{Replay, cells};
-use super::{Canvas, DrawError};
+use super::{DrawError, write_png};
 use crate::trace::Trace;
 
 /// Sides of the drawn map in pixels, about.
@@ -42,10 +43,10 @@ pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
     let rows = keys.last().map_or(0, |key| key.row + 1);
     let lines = caption(trace, &replay, last_news);
     let footer = MARGIN + LINE * (lines.len() as i32 + rows) + MARGIN / 2;
-    let mut canvas = Canvas::new(frame.width, frame.bottom() as u32 + footer as u32);
+    let size = (frame.width, frame.bottom() as u32 + footer as u32);
+    let mut picture = RgbImage::from_pixel(size.0, size.1, Rgb([255; 3]));
     {
-        let size = (canvas.width, canvas.height);
-        let area = BitMapBackend::with_buffer(&mut canvas.pixels, size).into_drawing_area();
+        let area = BitMapBackend::with_buffer(&mut picture, size).into_drawing_area();
         frame.draw_ground(&area, &replay)?;
         frame.draw_ways(&area, trace)?;
         frame.draw_robots(&area, trace, &replay)?;
@@ -59,7 +60,7 @@ pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
         }
         area.present()?;
     }
-    canvas.write_png(to)
+    write_png(&picture, to)
 }
 
 /// Where the map lies in the picture.

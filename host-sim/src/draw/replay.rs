@@ -75,6 +75,11 @@ impl<'a> Replay<'a> {
         }
     }
 
+    /// Ticks played.
+    pub(super) fn ticks(&self) -> u32 {
+        self.now
+    }
+
     /// Where the robots are after the last tick played.
     pub fn positions(&self) -> &[Cell] {
         &self.positions

@@ -1,7 +1,6 @@
 //! Fleets of flying robots over unknown surfaces.
 
 pub mod baselines;
-pub mod draw;
 mod error;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod figures;

@@ -214,20 +214,6 @@ impl Trace {
         record::write(to, FORMAT, &Header::of(self), rows)
     }
 
-    /// Writes `tick,seen_cells,seen_share` line by line; the share is of all columns, 0
-    /// to 1.
-    ///
-    /// # Errors
-    /// Those of `to`.
-    pub fn write_coverage(&self, mut to: impl io::Write) -> io::Result<()> {
-        writeln!(to, "tick,seen_cells,seen_share")?;
-        let all = f64::from(self.extent.cells());
-        for (tick, &seen) in self.seen.iter().enumerate() {
-            writeln!(to, "{tick},{seen},{:.6}", f64::from(seen) / all)?;
-        }
-        Ok(())
-    }
-
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
         record::digest(self.records.iter().map(Record::row))

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::Shape;
-use host_sim::survey::draw::{animation, oblique_view};
+use host_sim::draw::{animate, oblique_view, top_view};
 use host_sim::survey::{self, Record, Stepping, Terrain, TerrainSource, Trace};
 use image::RgbImage;
 use planner_core::{Cell, Extent, Point};
@@ -170,8 +170,10 @@ impl Flight for Heights {
     }
 
     fn animation(&self) -> Result<Vec<u8>, String> {
-        let mut gif = Vec::new();
-        animation(self.trace(), &mut gif).map_err(|error| error.to_string())?;
+        let (trace, mut gif) = (self.trace(), Vec::new());
+        let steps = trace.seen.len() as u32;
+        animate(steps, |step| top_view(trace, step), &mut gif)
+            .map_err(|error| error.to_string())?;
         Ok(gif)
     }
 

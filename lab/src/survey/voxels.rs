@@ -1,7 +1,7 @@
 //! Towns of voxels: streets, rooms, bridges, cube by cube.
 
 use egui::Shape;
-use host_sim::survey::draw::animate;
+use host_sim::draw::animate;
 use host_sim::survey::voxels::{Scene, Simulation, VoxelTrace};
 use image::RgbImage;
 use planner_core::volume::Voxel;

@@ -11,11 +11,11 @@ use planner_core::{Point, Stop};
 use super::file::Record;
 use super::scene::{LARGEST, LEVELS, Scene};
 use crate::dice::Dice;
+use crate::draw::{Block, oblique};
 use crate::fleet::Sent;
 use crate::medium::MediumKind;
 use crate::record::Deed;
 use crate::survey::DEFAULT_BYTE_BUDGET;
-use crate::survey::draw::{Block, oblique};
 use crate::survey::error::{SurveyError, check_robots, check_share};
 use crate::survey::octree::OcTree;
 

@@ -3,7 +3,7 @@
 use image::{Rgb, RgbImage};
 use planner_core::{Cell, Extent, Point};
 
-use super::{ROBOT_COLOURS, shade};
+use super::paint::{DARK, disc, line, put, shade, way_color};
 use crate::survey::Trace;
 
 /// Width of a picture in pixels, about.
@@ -44,14 +44,14 @@ pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
 }
 
 /// Something solid over one column of cells.
-pub(in crate::survey) struct Block {
-    pub(in crate::survey) cell: Cell,
-    pub(in crate::survey) bottom: f32,
-    pub(in crate::survey) top: f32,
+pub(crate) struct Block {
+    pub(crate) cell: Cell,
+    pub(crate) bottom: f32,
+    pub(crate) top: f32,
 }
 
 /// Blocks and ways in a box whose blocks reach up to `highest`.
-pub(in crate::survey) fn oblique(
+pub(crate) fn oblique(
     extent: Extent,
     highest: f32,
     mut blocks: Vec<Block>,
@@ -68,7 +68,7 @@ pub(in crate::survey) fn oblique(
     let mut picture = RgbImage::from_pixel(
         ((width + height) * scale + 2.0 * margin) as u32,
         ((width + height) * scale * 0.5 + top * scale + 2.0 * margin) as u32,
-        Rgb([24, 26, 30]),
+        DARK,
     );
     // Far blocks first, so that near ones cover them.
     blocks.sort_by(|a, b| {
@@ -79,26 +79,13 @@ pub(in crate::survey) fn oblique(
         block(&mut picture, solid, highest, view);
     }
     for (robot, way) in ways.iter().enumerate() {
-        let colour = ROBOT_COLOURS[robot % ROBOT_COLOURS.len()];
+        let colour = way_color(robot);
         for leg in way.windows(2) {
-            let ((x0, y0), (x1, y1)) = (view.project(leg[0]), view.project(leg[1]));
-            let pixels = (x1 - x0).abs().max((y1 - y0).abs()).ceil().max(1.0);
-            for i in 0..=pixels as u32 {
-                let share = i as f32 / pixels;
-                let (x, y) = (x0 + (x1 - x0) * share, y0 + (y1 - y0) * share);
-                put(&mut picture, x, y, colour);
-                put(&mut picture, x, y + 1.0, colour);
-            }
+            let (from, to) = (view.project(leg[0]), view.project(leg[1]));
+            line(&mut picture, from, to, &[(0.0, 0.0), (0.0, 1.0)], colour);
         }
         if let Some(last) = way.last() {
-            let (x, y) = view.project(*last);
-            for dy in -4i8..=4 {
-                for dx in -4i8..=4 {
-                    if i32::from(dx).pow(2) + i32::from(dy).pow(2) <= 16 {
-                        put(&mut picture, x + f32::from(dx), y + f32::from(dy), colour);
-                    }
-                }
-            }
+            disc(&mut picture, view.project(*last), 0.0..=4.0, colour);
         }
     }
     picture
@@ -121,11 +108,5 @@ fn block(picture: &mut RgbImage, block: &Block, highest: f32, view: View) {
         for dy in half + 1..=half + deep {
             put(picture, x + dx as f32, y + dy as f32, side);
         }
-    }
-}
-
-fn put(picture: &mut RgbImage, x: f32, y: f32, colour: Rgb<u8>) {
-    if x >= 0.0 && y >= 0.0 && (x as u32) < picture.width() && (y as u32) < picture.height() {
-        picture.put_pixel(x as u32, y as u32, colour);
     }
 }

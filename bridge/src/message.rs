@@ -1,9 +1,10 @@
 //! What the two sides say.
 
 use heapless::Vec;
-use planner_core::map::{ExtentError, TileIndex};
+use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Hearsay, LinkConfig, TileRecord};
 use planner_core::survey::SetupError;
+use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, Wait, explorer,
     local_frontiers,

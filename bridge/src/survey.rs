@@ -5,8 +5,9 @@
 
 use heapless::Vec;
 use planner_core::radio::{FrameError, LinkConfig};
-use planner_core::surface::{Bits, Column, Height, Patch, Surface, Tile};
+use planner_core::surface::{Column, Height, Patch, Surface};
 use planner_core::survey::{Action, Knowledge, Motion, Status};
+use planner_core::tile::{TileIndex, bits};
 use planner_core::{Point, Wait, coordinated_survey, fcao};
 use serde::{Deserialize, Serialize};
 
@@ -147,13 +148,13 @@ impl<'a> PatchRecord<'a> {
     /// The patch.
     pub fn patch(&self) -> Patch {
         let mut heights = [Height(0); 64];
-        for (bit, &height) in Bits(self.cells).zip(self.heights) {
+        for (bit, &height) in bits(self.cells).zip(self.heights) {
             if let Some(place) = heights.get_mut(bit as usize) {
                 *place = Height(height);
             }
         }
         Patch {
-            tile: Tile {
+            tile: TileIndex {
                 x: self.x,
                 y: self.y,
             },
@@ -165,7 +166,7 @@ impl<'a> PatchRecord<'a> {
 }
 
 fn heights_of(patch: &Patch) -> impl Iterator<Item = u8> {
-    Bits(patch.cells).map(|bit| patch.heights.get(bit as usize).map_or(0, |height| height.0))
+    bits(patch.cells).map(|bit| patch.heights.get(bit as usize).map_or(0, |height| height.0))
 }
 
 /// A number that tells maps apart. Two maps of different compiled sizes with the same
@@ -195,7 +196,7 @@ pub fn imprint(frame: &[u8]) -> u32 {
 /// FNV-1a over what the patches say, folded.
 fn hash(patches: impl Iterator<Item = Patch>) -> u32 {
     folded(patches.fold(SEED, |hash, patch| {
-        let Tile { x, y } = patch.tile;
+        let TileIndex { x, y } = patch.tile;
         let head = u64::from_le_bytes([x, y, patch.fresh.into(), 0, 0, 0, 0, 0]);
         heights_of(&patch).fold(eat(eat(hash, head), patch.cells), |hash, height| {
             eat(hash, height.into())

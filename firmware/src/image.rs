@@ -5,8 +5,8 @@ use core::fmt::{self, Write as _};
 use cortex_m_rt::entry;
 use cortex_m_semihosting::hio;
 use firmware::{Ending, Exploration, World, end, explore, stack};
+use planner_core::ExtentError;
 use planner_core::explorer::{Config, Explorer};
-use planner_core::map::ExtentError;
 use planner_core::{Planner, RobotId};
 use static_cell::ConstStaticCell;
 

@@ -4,7 +4,7 @@
 
 use crc::{CRC_16_IBM_SDLC, Crc};
 use libfuzzer_sys::fuzz_target;
-use planner_core::map::TILE;
+use planner_core::tile::TILE;
 use planner_core::radio::{Frame, GridId, MAX_LEN, SurfaceFrame, VoxelFrame};
 use planner_core::{Cell, Extent};
 

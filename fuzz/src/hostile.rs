@@ -1,9 +1,10 @@
 //! A robot among liars. Used by the fuzz target and by a property test.
 
 use planner_core::explorer::{Config, Explorer};
-use planner_core::map::{Tile, TileIndex};
+use planner_core::map::Tile;
 use planner_core::radio::{Frame, GridId, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::sight::look;
+use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Activity, Cell, Extent, Map, Motion, Planner, RobotId, Sighting, Status, Stop, Wait,
 };

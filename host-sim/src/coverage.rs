@@ -1,6 +1,6 @@
 //! How much of the world has been seen, and by how many.
 
-use planner_core::map::TileIndex;
+use planner_core::tile::TileIndex;
 
 use crate::sensor::{View, tile_columns};
 use crate::world::{Reachable, World};
@@ -19,7 +19,7 @@ pub(crate) struct Coverage {
 impl Coverage {
     pub(crate) fn new(world: &World, reachable: &Reachable, robots: usize) -> Self {
         let columns = tile_columns(world);
-        let rows = usize::from(world.extent().height).div_ceil(planner_core::map::TILE);
+        let rows = usize::from(world.extent().height).div_ceil(planner_core::tile::TILE);
         let none = vec![0; columns * rows];
         let mut mask = none.clone();
         for (tile, bit) in reachable.cells().filter_map(TileIndex::of) {

@@ -4,7 +4,7 @@ mod faults;
 
 use std::sync::Arc;
 
-use planner_core::map::TileIndex;
+use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, explorer,
 };

@@ -4,9 +4,9 @@ use std::fmt;
 
 use bridge::PlannerConfig;
 use clap::ValueEnum;
+use planner_core::ExtentError;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
-use planner_core::map::ExtentError;
 use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use planner_core::map::{TILE, TileIndex};
+use planner_core::tile::{TILE, TileIndex};
 use planner_core::{Cell, Direction, Sighting, sight};
 
 use crate::world::World;

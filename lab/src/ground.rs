@@ -3,7 +3,7 @@
 use egui::{Color32, ColorImage};
 use host_sim::run::Stepping;
 use host_sim::trace::Record;
-use planner_core::map::TileIndex;
+use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, Extent};
 
 use crate::colors::{Colors, mix};
@@ -89,7 +89,7 @@ pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) 
     }
     if let (Subject::Robot(robot), Some(state), true) = (subject, state, layers.search) {
         for (tile, cells) in tiles(extent).map(|tile| (tile, state.searched(robot, tile))) {
-            for cell in planner_core::map::bits(cells).map(|bit| tile.cell(bit)) {
+            for cell in planner_core::tile::bits(cells).map(|bit| tile.cell(bit)) {
                 if extent.contains(cell) {
                     let pixel = &mut pixels[cell.y as usize * width + cell.x as usize];
                     *pixel = mix(*pixel, colors.searched, 0.6);
@@ -174,7 +174,7 @@ fn of_robot(state: &dyn Stepping, robot: usize, extent: Extent) -> Vec<Known> {
     let mut known = vec![Known::Unknown; extent.cells() as usize];
     for at in tiles(extent) {
         let tile = state.tile(robot, at);
-        for bit in planner_core::map::bits(tile.known) {
+        for bit in planner_core::tile::bits(tile.known) {
             let cell = at.cell(bit);
             if extent.contains(cell) {
                 known[cell.y as usize * width + cell.x as usize] = match tile.obstacle >> bit & 1 {

@@ -127,6 +127,25 @@ impl Extent {
         cell.x >= 0 && cell.y >= 0 && (cell.x as u16) < self.width && (cell.y as u16) < self.height
     }
 
+    /// Whether a map with room for `capacity` holds it.
+    pub(crate) const fn fits(self, capacity: Self) -> Result<(), ExtentError> {
+        if self.cells() == 0 {
+            return Err(ExtentError::Empty);
+        }
+        if self.width > capacity.width || self.height > capacity.height {
+            return Err(ExtentError::TooLarge {
+                asked: self,
+                capacity,
+            });
+        }
+        Ok(())
+    }
+
+    /// Columns and rows of tiles that hold its cells.
+    pub(crate) const fn tiles(self) -> (u8, u8) {
+        (self.width.div_ceil(8) as u8, self.height.div_ceil(8) as u8)
+    }
+
     /// Number of cells.
     pub const fn cells(self) -> u32 {
         self.width as u32 * self.height as u32
@@ -138,3 +157,55 @@ impl fmt::Display for Extent {
         write!(f, "{}×{}", self.width, self.height)
     }
 }
+
+/// A map does not hold the grid that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum ExtentError {
+    /// A grid without cells.
+    Empty,
+    /// The grid is larger than the map was compiled for.
+    TooLarge {
+        /// What was asked for.
+        asked: Extent,
+        /// What fits.
+        capacity: Extent,
+    },
+    /// The box has more levels than the map was compiled for.
+    TooHigh {
+        /// What was asked for.
+        asked: u8,
+        /// What fits.
+        capacity: u8,
+    },
+    /// The robot is to start outside of the grid.
+    Start {
+        /// Where it was to start.
+        start: Cell,
+        /// The grid.
+        extent: Extent,
+    },
+}
+
+impl fmt::Display for ExtentError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => write!(f, "the grid has no cells"),
+            Self::TooLarge { asked, capacity } => write!(
+                f,
+                "a grid of {asked} cells does not fit a map compiled for {capacity}"
+            ),
+            Self::TooHigh { asked, capacity } => write!(
+                f,
+                "a box of {asked} levels does not fit a map compiled for {capacity}"
+            ),
+            Self::Start { start, extent } => write!(
+                f,
+                "the robot's start at {start} lies outside of the grid of {extent} cells"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ExtentError {}

@@ -22,12 +22,14 @@ mod robot;
 pub mod sight;
 pub mod surface;
 pub mod survey;
+pub mod tile;
 pub mod volume;
 pub mod voxel_survey;
 
-pub use cell::{Cell, Direction, Extent};
-pub use map::{Learnt, Map, TileSet};
+pub use cell::{Cell, Direction, Extent, ExtentError};
+pub use map::{Learnt, Map};
 pub use planner::Planner;
 pub use point::Point;
 pub use robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;
+pub use tile::TileSet;

@@ -1,10 +1,11 @@
 //! The verbs that every planner has.
 
 use crate::explorer::Role;
-use crate::map::{Learnt, Map, TileIndex, TileSet};
+use crate::map::{Learnt, Map};
 use crate::radio::{FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::sight::Sighting;
+use crate::tile::{TileIndex, TileSet};
 
 /// A planner of one robot on a map of at most `TW`×`TH` tiles.
 ///

@@ -6,8 +6,9 @@ use planner_core::Point;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::MAX_LEN;
-use planner_core::surface::{Column, Height, Patch, Tile};
+use planner_core::surface::{Column, Height, Patch};
 use planner_core::survey::{Limits, Motion, Status, Surveyor};
+use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::{self, VoxelSurvey};
 use static_cell::ConstStaticCell;
@@ -112,8 +113,8 @@ fn point() -> Point {
     black_box(Point::new(1.0, 1.0, 5.0))
 }
 
-fn tile() -> Tile {
-    black_box(Tile { x: 0, y: 0 })
+fn tile() -> TileIndex {
+    black_box(TileIndex { x: 0, y: 0 })
 }
 
 fn voxel() -> Voxel {

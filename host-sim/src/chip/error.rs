@@ -4,8 +4,8 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitStatus;
 
+use planner_core::ExtentError;
 use planner_core::RobotId;
-use planner_core::map::ExtentError;
 use planner_core::survey::SetupError;
 use thiserror::Error;
 

@@ -4,8 +4,9 @@ use std::rc::Rc;
 
 use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
 use planner_core::explorer::Role;
-use planner_core::map::{Tile, TileIndex};
+use planner_core::map::Tile;
 use planner_core::radio::{Frame, FrameError, GridId, Heard, Hearsay, MAX_LEN, TileRecord};
+use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
 };
@@ -255,7 +256,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
         });
         let mut changed = TileSet::new();
         for (&row, y) in rows.iter().flatten().zip(0u8..) {
-            for x in planner_core::map::bits(row) {
+            for x in planner_core::tile::bits(row) {
                 changed.insert(TileIndex::new(x as u8, y));
             }
         }

@@ -5,8 +5,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use planner_core::map::{Tile, TileIndex};
+use planner_core::map::Tile;
 use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
+use planner_core::tile::TileIndex;
 use planner_core::{Activity, Cell, Extent, Map, RobotId, Status};
 use serde::{Deserialize, Serialize};
 

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use planner_core::map::TileIndex;
 use planner_core::radio::LinkConfig;
+use planner_core::tile::TileIndex;
 use planner_core::{Cell, Extent, Map, RobotId, Status, TileSet};
 use proptest::prelude::*;
 

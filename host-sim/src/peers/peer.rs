@@ -1,6 +1,6 @@
 //! A robot that walks to the frontier that a rule assigns to it.
 
-use planner_core::map::ExtentError;
+use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::{
     Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,

@@ -1,6 +1,6 @@
 //! Waves over the known free cells of a map, from every robot, step by step.
 
-use planner_core::map::TileIndex;
+use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, Map, RobotId};
 
 /// A cell of the padded grid of bits, as its number.
@@ -108,7 +108,7 @@ impl Waves {
     pub fn frontiers(&self) -> impl Iterator<Item = Spot> + '_ {
         let bytes = self.grid.frontier.iter().zip(0..);
         bytes.flat_map(|(&byte, at)| {
-            planner_core::map::bits(u64::from(byte)).map(move |bit| at * 8 + bit)
+            planner_core::tile::bits(u64::from(byte)).map(move |bit| at * 8 + bit)
         })
     }
 

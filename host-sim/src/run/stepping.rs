@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use planner_core::map::{Tile, TileIndex};
+use planner_core::map::Tile;
+use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, RobotId, Wait};
 
 use super::book::Book;

@@ -2,8 +2,9 @@
 //! rules as the planners of the core.
 
 use planner_core::radio::LinkConfig;
-use planner_core::surface::{Bits, Surface};
+use planner_core::surface::Surface;
 use planner_core::survey::{Action, Knowledge, Limits, PATIENCE, SetupError, Surveyor};
+use planner_core::tile::bits;
 use planner_core::{Cell, Extent, Point, RobotId, Stop};
 
 /// Steps without gain after which a [`Follower`] gives up. The published methods never
@@ -141,7 +142,7 @@ fn closest_of_all<const TW: usize, const TH: usize>(
     let distance = |cell: &Cell| here.plan_distance(Point::over(*cell, 0.0));
     let cells = surface
         .tiles()
-        .flat_map(|tile| Bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
+        .flat_map(|tile| bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
     let closest = cells.min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let tiles = surface.tiles().count() as u32;
     (closest, tiles + surface.frontiers())
@@ -160,7 +161,7 @@ pub fn assign<const TW: usize, const TH: usize>(
     let mut groups: Vec<Vec<Point>> = Vec::new();
     let frontiers = surface
         .tiles()
-        .flat_map(|tile| Bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
+        .flat_map(|tile| bits(surface.frontier_cells(tile)).map(move |bit| tile.cell(bit)));
     for cell in frontiers {
         let at = Point::over(cell, 0.0);
         let mut leaders = groups.iter_mut();

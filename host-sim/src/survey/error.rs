@@ -1,8 +1,8 @@
 //! Surveys that cannot be flown, and why.
 
 use planner_core::Extent;
+use planner_core::ExtentError;
 use planner_core::survey::SetupError;
-use planner_core::volume::DoesNotFit;
 use thiserror::Error;
 
 /// A survey that cannot be flown, said so that the reader can mend it.
@@ -58,7 +58,7 @@ pub enum SurveyError {
     #[error("{0}")]
     Setup(#[from] SetupError),
     #[error("{0}")]
-    DoesNotFit(#[from] DoesNotFit),
+    Extent(#[from] ExtentError),
 }
 
 impl SurveyError {

@@ -6,7 +6,7 @@ use crate::cell::Cell;
 use crate::list;
 use crate::math;
 use crate::point::Point;
-use crate::surface::{Bits, Tile};
+use crate::tile::{TileIndex, bits};
 
 /// Tiles whose frontiers are looked at one by one.
 pub(super) const SHORTLIST: usize = 4;
@@ -48,7 +48,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             Some(turn)
         });
         let kept = core::mem::take(&mut self.shortlist);
-        let mut shortlist: [Option<(f32, Tile)>; SHORTLIST] = [None; SHORTLIST];
+        let mut shortlist: [Option<(f32, TileIndex)>; SHORTLIST] = [None; SHORTLIST];
         for tile in kept.iter().chain(&nearest).copied().chain(in_turn) {
             work += 2;
             let is_listed = shortlist
@@ -71,7 +71,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.shortlist = list::collect(shortlist.iter().flatten().map(|&(_, tile)| tile));
         let mut best: Option<(f32, Cell)> = None;
         for (_, tile) in shortlist.into_iter().flatten() {
-            for bit in Bits(self.knowledge.surface().frontier_cells(tile)) {
+            for bit in bits(self.knowledge.surface().frontier_cells(tile)) {
                 work += 16;
                 let cell = tile.cell(bit);
                 let at = Point::over(cell, 0.0);

@@ -27,8 +27,8 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::RobotId;
-use crate::surface::Tile;
 use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
 
@@ -78,8 +78,8 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     rescue: Rescue<TW, TH>,
     /// The best tiles with frontiers of the last time, and where the look at all of
     /// them in turn stands.
-    shortlist: Vec<Tile, SHORTLIST>,
-    turn: Tile,
+    shortlist: Vec<TileIndex, SHORTLIST>,
+    turn: TileIndex,
     /// Steps near a target since the last gain.
     stuck: u8,
     /// Whether the last step was a local one.
@@ -102,7 +102,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             history: History::new(),
             rescue: Rescue::vacant(),
             shortlist: Vec::new(),
-            turn: Tile { x: 0, y: 0 },
+            turn: TileIndex { x: 0, y: 0 },
             stuck: 0,
             local: false,
         }
@@ -124,7 +124,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.history = History::new();
         self.rescue.reset();
         self.shortlist.clear();
-        self.turn = Tile { x: 0, y: 0 };
+        self.turn = TileIndex { x: 0, y: 0 };
         self.stuck = 0;
         self.local = false;
         Ok(())

@@ -3,7 +3,7 @@
 use super::CoordinatedSurvey;
 use crate::cell::Cell;
 use crate::point::Point;
-use crate::surface::{Bits, Tile};
+use crate::tile::{TileIndex, bits};
 
 /// Frontiers farther away than this share of the range are left for later.
 const REACH: f32 = 1.28;
@@ -50,7 +50,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             if self.knowledge.surface().frontiers_in(tile) == 0 {
                 continue;
             }
-            for bit in Bits(self.knowledge.surface().frontier_cells(tile)) {
+            for bit in bits(self.knowledge.surface().frontier_cells(tile)) {
                 work += 1;
                 let cell = tile.cell(bit);
                 let at = Point::over(cell, 0.0);
@@ -95,13 +95,14 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 }
 
 /// The tiles that hold a cell within `radius` of `centre`, and a few more.
-fn tiles_within(centre: Point, radius: f32) -> impl Iterator<Item = Tile> {
+fn tiles_within(centre: Point, radius: f32) -> impl Iterator<Item = TileIndex> {
     let corner = |by: f32| {
         let cell = centre.offset(by, by, 0.0).cell();
-        Tile::of(Cell::new(cell.x.max(0), cell.y.max(0))).unwrap_or(Tile { x: 255, y: 255 })
+        TileIndex::of(Cell::new(cell.x.max(0), cell.y.max(0)))
+            .map_or(TileIndex { x: 255, y: 255 }, |(tile, _)| tile)
     };
     let (first, last) = (corner(-radius), corner(radius));
-    (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| Tile { x, y }))
+    (first.y..=last.y).flat_map(move |y| (first.x..=last.x).map(move |x| TileIndex { x, y }))
 }
 
 #[cfg(test)]

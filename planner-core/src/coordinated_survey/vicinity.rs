@@ -4,7 +4,8 @@
 use crate::cell::Cell;
 use crate::math;
 use crate::point::Point;
-use crate::surface::{Surface, Tile};
+use crate::surface::Surface;
+use crate::tile::TileIndex;
 
 /// Rows, and columns of a row. Flights are judged as far as this reaches: at least
 /// 27 columns to each side, and one more whose rim is not exact.
@@ -52,8 +53,10 @@ impl Vicinity {
                     origin.x.saturating_add(8 * byte),
                     origin.y.saturating_add(y),
                 );
-                let word = Tile::of(cell).map_or(0, |tile| surface.unknown(tile));
-                *row |= (word >> Tile::bit(cell) & 0xff) << (8 * byte);
+                let shown = TileIndex::of(cell).map_or(0, |(tile, first)| {
+                    surface.unknown(tile) >> first.trailing_zeros() & 0xff
+                });
+                *row |= shown << (8 * byte);
             }
         }
         let mut rows = unknown.map(|unknown| Row { unknown, rim: 0 });

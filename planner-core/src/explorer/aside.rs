@@ -15,7 +15,8 @@
 //! cell refuses a step too, all cells of the round count as closed.
 
 use crate::cell::Cell;
-use crate::map::{Map, TileIndex};
+use crate::map::Map;
+use crate::tile::{TileIndex, Tiles};
 
 /// Ticks from the last refusal to the end of the first round.
 const FIRST_PAUSE: u32 = 4;
@@ -42,7 +43,7 @@ pub(crate) enum Verdict {
 /// The cells set aside since the round began. 8 bytes a tile, and 24.
 #[derive(Debug)]
 pub(crate) struct Aside<const TW: usize, const TH: usize> {
-    cells: [[u64; TW]; TH],
+    cells: Tiles<u64, TW, TH>,
     /// A cell that refused, and one that no look showed.
     refused_at: Cell,
     unseen_at: Cell,
@@ -65,7 +66,7 @@ pub(crate) struct Aside<const TW: usize, const TH: usize> {
 impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     pub(crate) const fn new() -> Self {
         Self {
-            cells: [[0; TW]; TH],
+            cells: Tiles::all(0),
             refused_at: Cell::new(0, 0),
             unseen_at: Cell::new(0, 0),
             until: 0,
@@ -88,7 +89,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
 
     fn begin_round(&mut self) {
         if self.has_refused || self.unseen > 0 {
-            self.cells = [[0; TW]; TH];
+            self.cells.fill(0);
         }
         self.has_refused = false;
         self.is_blocked = false;
@@ -167,8 +168,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
 
     fn word_mut(&mut self, cell: Cell) -> Option<(&mut u64, u64)> {
         let (at, bit) = TileIndex::of(cell)?;
-        let row = self.cells.get_mut(usize::from(at.y))?;
-        Some((row.get_mut(usize::from(at.x))?, bit))
+        Some((self.cells.get_mut(at)?, bit))
     }
 
     /// The cells of a tile that are no goals.
@@ -176,9 +176,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
         if !self.has_refused && self.unseen == 0 {
             return 0;
         }
-        let row = self.cells.get(usize::from(at.y));
-        let word = row.and_then(|row| row.get(usize::from(at.x)));
-        word.copied().unwrap_or(0)
+        self.cells.word(at)
     }
 
     /// The cells of a tile that no way leads over. Work: one word, or five tiles where

@@ -14,8 +14,8 @@ use super::surroundings::Surroundings;
 use super::wave::{LABELS, Wave};
 use super::window::Candidate;
 use crate::cell::Cell;
-use crate::map::TileIndex;
 use crate::robot::RobotId;
+use crate::tile::TileIndex;
 
 /// How often all frontiers are given away anew if there are more robots than
 /// frontiers, before the robot looks for itself alone.

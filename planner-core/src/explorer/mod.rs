@@ -113,12 +113,14 @@ use role::Plan;
 use surroundings::Surroundings;
 use window::{Aim, Candidate, NearSearch};
 
+use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
-use crate::map::{ExtentError, Learnt, Map, TileIndex, TileSet};
+use crate::map::{Learnt, Map};
 use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::Sighting;
+use crate::tile::{TileIndex, TileSet};
 
 /// How an explorer decides. One configuration serves a whole fleet; none of it
 /// depends on the map's size or the number of robots.

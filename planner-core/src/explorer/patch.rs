@@ -3,7 +3,7 @@
 
 use super::window::{Rows, SIDE, Window};
 use crate::cell::Cell;
-use crate::map::TileIndex;
+use crate::tile::TileIndex;
 
 /// How far from the goal, each way: what the usual sensor sees at once.
 const REACH: usize = 5;
@@ -66,7 +66,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::map::bits;
+    use crate::tile::bits;
 
     /// A layer with the cells that a draw gives, around `(20, 20)`.
     fn layer(cells: &[bool], width: i16) -> (HashSet<Cell>, HashMap<TileIndex, u64>) {

@@ -2,7 +2,8 @@
 
 use super::aside::Aside;
 use crate::cell::{Cell, Direction};
-use crate::map::{Map, TileIndex};
+use crate::map::Map;
+use crate::tile::TileIndex;
 
 /// The robot's knowledge of the place, apart from the other robots.
 pub(crate) struct Surroundings<const TW: usize, const TH: usize> {

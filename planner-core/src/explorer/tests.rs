@@ -319,7 +319,7 @@ fn run(scene: &Scene, limit: u32) -> Ended {
         let mut all = TileSet::new();
         for y in 0..3 {
             for x in 0..3 {
-                all.insert(crate::map::TileIndex { x, y });
+                all.insert(crate::tile::TileIndex { x, y });
             }
         }
         all

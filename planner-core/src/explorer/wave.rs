@@ -7,7 +7,7 @@
 
 use super::others::MAX_OTHERS;
 use crate::cell::{Cell, Direction};
-use crate::map::{TileIndex, TileSet, carried, shifted};
+use crate::tile::{TileIndex, TileSet, Tiles, carried, shifted};
 
 /// Waves that can run at once: the robot's own and one for each other.
 pub(crate) const LABELS: usize = 16;
@@ -108,8 +108,8 @@ impl WaveTile {
 
 /// The state of a wave over a map of `TW`×`TH` tiles.
 pub(crate) struct Wave<const TW: usize, const TH: usize> {
-    tiles: [[WaveTile; TW]; TH],
-    stamps: [[Stamp; TW]; TH],
+    tiles: Tiles<WaveTile, TW, TH>,
+    stamps: Tiles<Stamp, TW, TH>,
     /// The number of this wave: tiles of earlier ones count as empty.
     round: u16,
     /// The tiles with frontier cells that are spoken for.
@@ -122,8 +122,8 @@ pub(crate) struct Wave<const TW: usize, const TH: usize> {
 impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     pub(crate) const fn new() -> Self {
         Self {
-            tiles: [[WaveTile::EMPTY; TW]; TH],
-            stamps: [[Stamp::NONE; TW]; TH],
+            tiles: Tiles::all(WaveTile::EMPTY),
+            stamps: Tiles::all(Stamp::NONE),
             round: 0,
             spoken: TileSet::new(),
             active: [TileSet::new(); 2],
@@ -137,8 +137,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         // One stamp in turn is wiped, so none gets so old that its number comes again.
         let turn = usize::from(self.round).checked_rem(TW * TH);
         if let Some(turn) = turn
-            && let Some(row) = self.stamps.get_mut(turn / TW)
-            && let Some(stamp) = row.get_mut(turn % TW)
+            && let Some(stamp) = self.stamps.values_mut().nth(turn)
         {
             *stamp = Stamp::NONE;
         }
@@ -174,20 +173,14 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
 
     /// The tile, if this wave has been there.
     fn tile(&self, at: TileIndex) -> Option<&WaveTile> {
-        let (x, y) = (usize::from(at.x), usize::from(at.y));
-        let is_current = self.stamps.get(y)?.get(x)?.round == self.round;
-        if is_current { self.stored(at) } else { None }
-    }
-
-    fn stored(&self, at: TileIndex) -> Option<&WaveTile> {
-        self.tiles.get(usize::from(at.y))?.get(usize::from(at.x))
+        let is_current = self.stamps.get(at)?.round == self.round;
+        if is_current { self.tiles.get(at) } else { None }
     }
 
     #[inline(always)] // in the innermost loop
     fn tile_mut(&mut self, at: TileIndex) -> Option<(&mut WaveTile, &mut Stamp)> {
-        let (x, y) = (usize::from(at.x), usize::from(at.y));
-        let tile = self.tiles.get_mut(y)?.get_mut(x)?;
-        let stamp = self.stamps.get_mut(y)?.get_mut(x)?;
+        let tile = self.tiles.get_mut(at)?;
+        let stamp = self.stamps.get_mut(at)?;
         if stamp.round != self.round {
             *stamp = Stamp {
                 round: self.round,
@@ -239,8 +232,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         }
         let at = self.active_now().pop_first()?;
         let parity = self.parity();
-        let tile = self.tiles.get_mut(usize::from(at.y))?;
-        let tile = tile.get_mut(usize::from(at.x))?;
+        let tile = self.tiles.get_mut(at)?;
         let [even, odd] = &mut tile.front;
         let front = if parity == 0 { even } else { odd };
         Some((at, core::mem::take(front)))
@@ -249,7 +241,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     /// Splits the front of a tile by label: the label of its first cell, all cells
     /// that carry it, and the rest. What was given up meanwhile is left out.
     pub(crate) fn first_label(&self, at: TileIndex, front: u64) -> (u8, u64, u64) {
-        self.stored(at).map_or((0, 0, 0), |tile| {
+        self.tiles.get(at).map_or((0, 0, 0), |tile| {
             let front = front & tile.reached;
             let label = tile.mark_of(front & front.wrapping_neg());
             let cells = front & tile.labelled(label);
@@ -259,7 +251,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
 
     /// The frontier cells of a tile that are spoken for.
     pub(crate) fn taken(&self, at: TileIndex) -> u64 {
-        match self.stored(at) {
+        match self.tiles.get(at) {
             Some(tile) if self.spoken.contains(at) => tile.taken,
             _ => 0,
         }

@@ -6,8 +6,8 @@ use super::others::MAX_OTHERS;
 use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
-use crate::map::{TILE, TileIndex, bits};
 use crate::robot::RobotId;
+use crate::tile::{TILE, TileIndex, bits};
 
 /// Side of the window in cells and in tiles.
 pub(crate) const SIDE: usize = 32;

@@ -38,12 +38,14 @@ mod rules;
 mod trace;
 mod view;
 
+use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
-use crate::map::{ExtentError, Learnt, Map, TileSet};
+use crate::map::{Learnt, Map};
 use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Hearsay, Link, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
+use crate::tile::TileSet;
 
 use closed::Closed;
 pub use config::{Config, Distance, Neighbourhood};

@@ -1,36 +1,31 @@
 //! The trace of the robot's own way.
 
 use crate::cell::{Cell, Direction};
-use crate::map::TileIndex;
+use crate::tile::{TileIndex, Tiles};
 
 /// Grid 𝒢 [Gauville2019 §3.2]: 0 where the robot has not set out from, else a
 /// rank that grows along its way. 128 bytes a tile.
 #[derive(Clone, PartialEq, Eq)]
 pub(super) struct Trace<const TW: usize, const TH: usize> {
-    ranks: [[[u16; 64]; TW]; TH],
+    ranks: Tiles<[u16; 64], TW, TH>,
 }
 
 impl<const TW: usize, const TH: usize> Trace<TW, TH> {
     pub(super) const fn new() -> Self {
         Self {
-            ranks: [[[0; 64]; TW]; TH],
+            ranks: Tiles::all([0; 64]),
         }
     }
 
     /// Back to zero, in place.
     pub(super) fn clear(&mut self) {
-        for tile in self.ranks.iter_mut().flatten() {
-            tile.fill(0);
-        }
+        self.ranks.fill([0; 64]);
     }
 
     /// The rank of a cell; 0 outside.
     pub(super) fn rank(&self, cell: Cell) -> u16 {
         TileIndex::of(cell)
-            .and_then(|(at, bit)| {
-                let tile = self.ranks.get(usize::from(at.y))?.get(usize::from(at.x))?;
-                tile.get(bit.trailing_zeros() as usize)
-            })
+            .and_then(|(at, bit)| self.ranks.get(at)?.get(bit.trailing_zeros() as usize))
             .copied()
             .unwrap_or(0)
     }
@@ -47,8 +42,7 @@ impl<const TW: usize, const TH: usize> Trace<TW, TH> {
             .max()
             .unwrap_or(0);
         if let Some((at, bit)) = TileIndex::of(cell)
-            && let Some(row) = self.ranks.get_mut(usize::from(at.y))
-            && let Some(tile) = row.get_mut(usize::from(at.x))
+            && let Some(tile) = self.ranks.get_mut(at)
             && let Some(rank) = tile.get_mut(bit.trailing_zeros() as usize)
         {
             *rank = highest.saturating_add(1);

@@ -5,8 +5,9 @@
 //! queue.
 
 use crate::cell::{Cell, Direction};
-use crate::map::{Map, Tile, TileIndex, bits};
+use crate::map::{Map, Tile};
 use crate::sight::{MAX_RADIUS, Sighting};
+use crate::tile::{TileIndex, bits};
 
 use super::config::{Distance, Neighbourhood};
 

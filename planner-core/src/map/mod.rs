@@ -9,54 +9,11 @@ mod tile;
 
 use core::fmt;
 
-pub use tile::{TILE, Tile, TileIndex, TileSet, bit_of, bits, carried, shifted};
+pub use tile::Tile;
 
-pub(crate) use tile::MOST_TILES;
-use tile::WEST_COLUMN;
-
-use crate::cell::{Cell, Direction, Extent};
+use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::sight::Sighting;
-
-/// A map does not hold the grid that was asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum ExtentError {
-    /// A grid without cells.
-    Empty,
-    /// The grid is larger than the map was compiled for.
-    TooLarge {
-        /// What was asked for.
-        asked: Extent,
-        /// What fits.
-        capacity: Extent,
-    },
-    /// The robot is to start outside of the grid.
-    Start {
-        /// Where it was to start.
-        start: Cell,
-        /// The grid.
-        extent: Extent,
-    },
-}
-
-impl fmt::Display for ExtentError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Empty => write!(f, "the grid has no cells"),
-            Self::TooLarge { asked, capacity } => write!(
-                f,
-                "a grid of {asked} cells does not fit a map compiled for {capacity}"
-            ),
-            Self::Start { start, extent } => write!(
-                f,
-                "the robot's start at {start} lies outside of the grid of {extent} cells"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ExtentError {}
+use crate::tile::{MOST_TILES, TILE, TileIndex, TileSet, Tiles, carried, every_tile, neighbours};
 
 /// What a map learnt from a sighting, a tile or another map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -91,8 +48,8 @@ impl core::ops::AddAssign for Learnt {
 #[derive(Clone, PartialEq, Eq)]
 pub struct Map<const TW: usize, const TH: usize> {
     extent: Extent,
-    tiles: [[Tile; TW]; TH],
-    frontier_counts: [[u8; TW]; TH],
+    tiles: Tiles<Tile, TW, TH>,
+    frontier_counts: Tiles<u8, TW, TH>,
     frontiers: u32,
     unknown: u32,
     /// Free cells on the edge of the extent.
@@ -125,8 +82,8 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     pub const fn vacant() -> Self {
         Self {
             extent: Extent::new(0, 0),
-            tiles: [[Tile::UNKNOWN; TW]; TH],
-            frontier_counts: [[0; TW]; TH],
+            tiles: Tiles::all(Tile::UNKNOWN),
+            frontier_counts: Tiles::all(0),
             frontiers: 0,
             unknown: 0,
             edge: 0,
@@ -149,31 +106,20 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// # Errors
     /// As [`new`](Self::new); the map is then unchanged.
     pub fn reset(&mut self, extent: Extent) -> Result<(), ExtentError> {
-        let capacity = Self::CAPACITY;
-        if extent.cells() == 0 {
-            return Err(ExtentError::Empty);
-        }
-        if extent.width > capacity.width || extent.height > capacity.height {
-            return Err(ExtentError::TooLarge {
-                asked: extent,
-                capacity,
-            });
-        }
+        extent.fits(Self::CAPACITY)?;
         self.extent = extent;
-        self.frontier_counts = [[0; TW]; TH];
+        self.frontier_counts.fill(0);
         self.frontiers = 0;
         self.unknown = extent.cells();
         self.edge = 0;
         self.changed.clear();
-        for (y, row) in self.tiles.iter_mut().enumerate() {
-            for (x, tile) in row.iter_mut().enumerate() {
-                let inside = inside_mask(extent, x, y);
-                *tile = Tile {
-                    known: !inside,
-                    obstacle: !inside,
-                    visited: 0,
-                };
-            }
+        for (at, tile) in every_tile(TW, TH).zip(self.tiles.values_mut()) {
+            let inside = at.inside(extent);
+            *tile = Tile {
+                known: !inside,
+                obstacle: !inside,
+                visited: 0,
+            };
         }
         Ok(())
     }
@@ -197,10 +143,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// Rows and columns of tiles that hold cells of the extent, as `(columns, rows)`.
     pub const fn tile_extent(&self) -> (u8, u8) {
-        (
-            self.extent.width.div_ceil(TILE as u16) as u8,
-            self.extent.height.div_ceil(TILE as u16) as u8,
-        )
+        self.extent.tiles()
     }
 
     /// Number of frontier cells: zero when nothing is left to explore.
@@ -226,21 +169,17 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// One tile; outside of the map, obstacles.
     pub fn tile(&self, at: TileIndex) -> Tile {
-        self.stored(at).copied().unwrap_or(Tile::OUTSIDE)
+        self.tiles.get(at).copied().unwrap_or(Tile::OUTSIDE)
     }
 
     /// The free cells of a tile.
     pub(crate) fn free(&self, at: TileIndex) -> u64 {
-        self.stored(at).map_or(0, |tile| tile.free())
-    }
-
-    fn stored(&self, at: TileIndex) -> Option<&Tile> {
-        self.tiles.get(usize::from(at.y))?.get(usize::from(at.x))
+        self.tiles.get(at).map_or(0, |tile| tile.free())
     }
 
     /// One tile without the cells beyond the extent, as robots tell each other.
     pub fn tile_inside(&self, at: TileIndex) -> Tile {
-        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
+        let inside = at.inside(self.extent);
         let tile = self.tile(at);
         Tile {
             known: tile.known & inside,
@@ -282,34 +221,15 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// The frontier cells of a tile. Reads five tiles, or none where the count is zero.
     pub fn frontier(&self, at: TileIndex) -> u64 {
-        let count = self
-            .frontier_counts
-            .get(usize::from(at.y))
-            .and_then(|row| row.get(usize::from(at.x)));
-        match count {
+        match self.frontier_counts.get(at) {
             None | Some(0) => 0,
             Some(_) => self.frontier_by_neighbours(at),
         }
     }
 
     fn frontier_by_neighbours(&self, at: TileIndex) -> u64 {
-        let Some(tile) = self.stored(at) else {
-            return 0;
-        };
-        let unknown = !tile.known;
-        let entering = |direction: Direction| {
-            let before = self.stored(at.beside(direction.opposite()));
-            before.map_or(0, |before| carried(!before.known, direction))
-        };
-        let beside_unknown = shifted(unknown, Direction::East)
-            | shifted(unknown, Direction::South)
-            | shifted(unknown, Direction::West)
-            | shifted(unknown, Direction::North)
-            | entering(Direction::East)
-            | entering(Direction::South)
-            | entering(Direction::West)
-            | entering(Direction::North);
-        tile.free() & beside_unknown
+        let unknown = |at| self.tiles.get(at).map_or(0, |tile| !tile.known);
+        self.free(at) & neighbours(at, unknown)
     }
 
     /// Marks a cell as stood upon; ignored outside.
@@ -331,13 +251,13 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     pub fn stand(&mut self, cell: Cell) {
         if let Some((at, bit)) = TileIndex::of(cell)
             && self.extent.contains(cell)
-            && let Some(tile) = self.tile_mut(at)
+            && let Some(tile) = self.tiles.get_mut(at)
             && tile.obstacle & bit != 0
         {
             tile.obstacle &= !bit;
             tile.visited |= bit;
             self.changed.insert(at);
-            self.edge += (bit & edge_mask(self.extent, at)).count_ones();
+            self.edge += (bit & at.edge(self.extent)).count_ones();
             self.recount(at);
         }
     }
@@ -377,8 +297,8 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// Joins another robot's tile into this map; ignored outside. Work: the tile
     /// and its four neighbours.
     pub fn join_tile(&mut self, at: TileIndex, other: Tile) -> Learnt {
-        let inside = inside_mask(self.extent, usize::from(at.x), usize::from(at.y));
-        let Some(tile) = self.tile_mut(at) else {
+        let inside = at.inside(self.extent);
+        let Some(tile) = self.tiles.get_mut(at) else {
             return Learnt::default();
         };
         let before = *tile;
@@ -395,7 +315,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         };
         if learnt.anything() {
             self.unknown -= learnt.cells;
-            let edge = edge_mask(self.extent, at);
+            let edge = at.edge(self.extent);
             self.edge += (after.free() & edge).count_ones();
             self.edge -= (before.free() & edge).count_ones();
             self.recount(at);
@@ -412,19 +332,9 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         learnt
     }
 
-    fn tile_mut(&mut self, at: TileIndex) -> Option<&mut Tile> {
-        self.tiles
-            .get_mut(usize::from(at.y))?
-            .get_mut(usize::from(at.x))
-    }
-
     fn recount(&mut self, at: TileIndex) {
         let now = self.frontier_by_neighbours(at).count_ones() as u8;
-        if let Some(count) = self
-            .frontier_counts
-            .get_mut(usize::from(at.y))
-            .and_then(|row| row.get_mut(usize::from(at.x)))
-        {
+        if let Some(count) = self.frontier_counts.get_mut(at) {
             self.frontiers = self.frontiers - u32::from(*count) + u32::from(now);
             *count = now;
         }
@@ -435,10 +345,8 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     pub fn join(&mut self, other: &Self) -> Learnt {
         let mut learnt = Learnt::default();
         if self.extent == other.extent {
-            for (row, y) in other.tiles.iter().zip(0u8..) {
-                for (tile, x) in row.iter().zip(0u8..) {
-                    learnt += self.join_tile(TileIndex { x, y }, *tile);
-                }
+            for (at, tile) in every_tile(TW, TH).zip(other.tiles.values()) {
+                learnt += self.join_tile(at, *tile);
             }
         }
         learnt
@@ -459,43 +367,6 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     pub fn take_changed(&mut self) -> TileSet<TH> {
         core::mem::take(&mut self.changed)
     }
-}
-
-/// The cells of tile `(x, y)` that lie within the extent.
-pub(crate) const fn inside_mask(extent: Extent, x: usize, y: usize) -> u64 {
-    let columns = (extent.width as usize).saturating_sub(x * TILE);
-    let rows = (extent.height as usize).saturating_sub(y * TILE);
-    let row: u64 = if columns >= TILE {
-        0xff
-    } else {
-        (1 << columns) - 1
-    };
-    let all_rows = row * 0x0101_0101_0101_0101;
-    if rows >= TILE {
-        all_rows
-    } else {
-        all_rows & ((1 << (rows * TILE)) - 1)
-    }
-}
-
-/// The cells of a tile that lie on the edge of the extent.
-fn edge_mask(extent: Extent, at: TileIndex) -> u64 {
-    let (x, y) = (at.x as usize, at.y as usize);
-    let last = |cells: u16| (cells as usize).saturating_sub(1);
-    let mut edge = 0;
-    if x == 0 {
-        edge |= WEST_COLUMN;
-    }
-    if y == 0 {
-        edge |= 0xff;
-    }
-    if x == last(extent.width) / TILE {
-        edge |= WEST_COLUMN << (last(extent.width) % TILE);
-    }
-    if y == last(extent.height) / TILE {
-        edge |= 0xff << (last(extent.height) % TILE * TILE);
-    }
-    edge & inside_mask(extent, x, y)
 }
 
 /// The map as text: `#` obstacle, `.` free, `+` visited, `?` frontier, space unknown.

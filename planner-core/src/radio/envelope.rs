@@ -5,8 +5,8 @@ use crc::{CRC_16_IBM_SDLC, Crc, Table};
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
-use crate::map::{MOST_TILES, TILE};
 use crate::robot::RobotId;
+use crate::tile::{MOST_TILES, TILE};
 
 /// The format that this code writes, and the only one that it reads.
 pub(super) const VERSION: u8 = 1;

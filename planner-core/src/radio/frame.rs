@@ -9,8 +9,9 @@ use super::envelope::{
 };
 use super::link::{GridId, Key};
 use crate::cell::Extent;
-use crate::map::{TILE, Tile, TileIndex};
+use crate::map::Tile;
 use crate::robot::{Activity, RobotId, Status};
+use crate::tile::{TILE, TileIndex};
 
 /// The longest frame in bytes: what the Crazyflie's peer-to-peer radio carries
 /// safely, less two.
@@ -189,9 +190,8 @@ impl Frame {
                 at: TileIndex { x, y },
                 tile: tile_of(u128::from_le_bytes(*codes)),
             };
-            if record.tile.known & !extent_mask(extent, record.at) != 0
-                || extent_mask(extent, record.at) == 0
-            {
+            let inside = record.at.inside(extent);
+            if record.tile.known & !inside != 0 || inside == 0 {
                 return Err(FrameError::Field(Field::Tile));
             }
             // There is room: the length was checked.
@@ -263,11 +263,6 @@ const SPACING: [(u32, u128); 6] = [
     (2, 0x3333_3333_3333_3333_3333_3333_3333_3333),
     (1, 0x5555_5555_5555_5555_5555_5555_5555_5555),
 ];
-
-/// The cells of a tile that lie on the grid.
-fn extent_mask(extent: Extent, at: TileIndex) -> u64 {
-    crate::map::inside_mask(extent, usize::from(at.x), usize::from(at.y))
-}
 
 const _: () = assert!(TILE == 8, "a record holds two bits for each of 64 cells");
 

@@ -1,9 +1,10 @@
 //! What a robot has from others, and what speaks against them.
 
 use super::{FrameError, TileRecord};
-use crate::map::{Map, TileIndex};
+use crate::map::Map;
 use crate::robot::RobotId;
 use crate::sight::Sighting;
+use crate::tile::TileIndex;
 
 /// Counters of what was heard, since the robot was set up. They saturate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -8,9 +8,10 @@ use super::hearsay::{Hearsay, Witness};
 use super::outbox::Outbox;
 use super::sent::Sent;
 use crate::cell::Extent;
-use crate::map::{Learnt, Map, TileSet};
+use crate::map::{Learnt, Map};
 use crate::robot::{RobotId, Status};
 use crate::sight::Sighting;
+use crate::tile::TileSet;
 
 /// Names a grid: robots whose maps differ in origin, resolution or size do not
 /// understand each other.

@@ -1,6 +1,6 @@
 //! What to send next, with constant memory.
 
-use crate::map::{TileIndex, TileSet};
+use crate::tile::{TileIndex, TileSet};
 
 /// Every so many tiles one is sent in turn, whatever else waits.
 const TURN: u8 = 8;
@@ -90,16 +90,9 @@ impl<const TH: usize> Outbox<TH> {
         self.again.pop_after(self.last)
     }
 
-    fn take_turn(&mut self, (columns, rows): (u8, u8)) -> TileIndex {
+    fn take_turn(&mut self, tile_extent: (u8, u8)) -> TileIndex {
         let tile = self.turn;
-        self.turn.x += 1;
-        if self.turn.x >= columns {
-            self.turn.x = 0;
-            self.turn.y += 1;
-            if self.turn.y >= rows {
-                self.turn.y = 0;
-            }
-        }
+        self.turn = tile.after(tile_extent);
         tile
     }
 

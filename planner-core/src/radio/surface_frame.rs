@@ -7,11 +7,12 @@ use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
 use crate::list;
-use crate::map::MOST_TILES;
 use crate::point::Point;
 use crate::robot::RobotId;
-use crate::surface::{Bits, Height, Patch, SIDE, Tile};
+use crate::surface::{Height, Patch};
 use crate::survey::Status;
+use crate::tile::MOST_TILES;
+use crate::tile::{TILE, TileIndex, bits};
 
 /// The kind of frame that carries columns of a height map.
 const HEIGHTS: u8 = 2;
@@ -30,7 +31,7 @@ const MAX_RECORDS: usize = ROOM / (RECORD + 1);
 /// Coordinates on the wire in one cell.
 const PER_CELL: f32 = 128.0;
 const _: () = assert!(
-    MOST_TILES * SIDE * PER_CELL as usize <= 1 << u16::BITS,
+    MOST_TILES * TILE * PER_CELL as usize <= 1 << u16::BITS,
     "a coordinate is written as a u16"
 );
 const _: () = assert!(
@@ -46,7 +47,7 @@ const _: () = assert!(
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct HeightRecord {
     /// Which tile; its coordinates are below 64.
-    pub tile: Tile,
+    pub tile: TileIndex,
     /// Which half: rows 4 to 7 instead of 0 to 3.
     pub south: bool,
     /// See [`Patch::fresh`].
@@ -90,7 +91,7 @@ impl HeightRecord {
             cells: 0,
             heights: Vec::new(),
         };
-        for bit in Bits(half).take(room) {
+        for bit in bits(half).take(room) {
             let height = patch.heights.get((bit + shift) as usize)?;
             record.heights.push(*height).ok()?;
             record.cells |= 1 << bit;
@@ -112,7 +113,7 @@ impl HeightRecord {
     pub(crate) fn patch(&self) -> Patch {
         let mut heights = [Height(0); 64];
         let cells = self.tile_cells();
-        for (bit, height) in Bits(cells).zip(&self.heights) {
+        for (bit, height) in bits(cells).zip(&self.heights) {
             if let Some(place) = heights.get_mut(bit as usize) {
                 *place = *height;
             }
@@ -235,13 +236,13 @@ fn decode_record(bytes: &[u8], extent: Extent) -> Result<(HeightRecord, &[u8]), 
         .split_at_checked(cells.count_ones() as usize)
         .ok_or(wrong)?;
     let record = HeightRecord {
-        tile: Tile { x: x & 63, y },
+        tile: TileIndex { x: x & 63, y },
         south: x & 128 != 0,
         fresh: x & 64 != 0,
         cells,
         heights: list::collect(heights.iter().map(|&height| Height(height))),
     };
-    let inside = record.tile.inside(extent.width, extent.height);
+    let inside = record.tile.inside(extent);
     if y > 63 || cells == 0 || record.tile_cells() & !inside != 0 {
         return Err(wrong);
     }

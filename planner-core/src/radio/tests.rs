@@ -6,8 +6,9 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::cell::{Cell, Extent};
-use crate::map::{Map, Tile, TileIndex};
+use crate::map::{Map, Tile};
 use crate::robot::{Activity, RobotId, Status};
+use crate::tile::TileIndex;
 
 const EXTENT: Extent = Extent::new(53, 43);
 

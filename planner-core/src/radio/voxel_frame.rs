@@ -8,9 +8,9 @@ use super::envelope::{
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::Extent;
-use crate::map::MOST_TILES;
 use crate::robot::RobotId;
-use crate::surface::Tile;
+use crate::tile::MOST_TILES;
+use crate::tile::TileIndex;
 use crate::volume::{Voxel, VoxelPatch};
 use crate::voxel_survey::Status;
 
@@ -64,7 +64,7 @@ fn length(patch: &VoxelPatch) -> usize {
 
 impl VoxelFrame {
     /// Whether it has a piece of that tile of that level.
-    pub(crate) fn has(&self, tile: Tile, z: u8) -> bool {
+    pub(crate) fn has(&self, tile: TileIndex, z: u8) -> bool {
         self.patches
             .iter()
             .any(|patch| (patch.tile, patch.z) == (tile, z))
@@ -193,9 +193,9 @@ fn decode_patch(
     let (is_whole, has_obstacles) = (x & 64 != 0, x & 128 != 0);
     let known = if is_whole { !0 } else { mask()? };
     let occupied = if has_obstacles { mask()? } else { 0 };
-    let tile = Tile { x: x & 63, y };
+    let tile = TileIndex { x: x & 63, y };
     let is_odd = known == 0
-        || known & !tile.inside(extent.width, extent.height) != 0
+        || known & !tile.inside(extent) != 0
         || !is_whole && known == !0
         || has_obstacles && occupied == 0
         || occupied & !known != 0;

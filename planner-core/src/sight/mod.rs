@@ -10,7 +10,7 @@ pub use line::{line_of_sight, look};
 pub use scan::{Beam, Pose, RangeScan, ScanError};
 
 use crate::cell::Cell;
-use crate::map::{TILE, TileIndex};
+use crate::tile::{TILE, TileIndex};
 
 /// The largest perception radius in cells.
 pub const MAX_RADIUS: u8 = 15;
@@ -98,7 +98,7 @@ impl Sighting {
     fn cells<'a>(&'a self, rows: &'a [u32; SPAN]) -> impl Iterator<Item = Cell> + 'a {
         let corner = self.corner();
         rows.iter().zip(0i16..).flat_map(move |(&row, dy)| {
-            crate::map::bits(u64::from(row)).map(move |dx| {
+            crate::tile::bits(u64::from(row)).map(move |dx| {
                 Cell::new(
                     corner.0.saturating_add(dx as i16),
                     corner.1.saturating_add(dy),

@@ -9,17 +9,12 @@
 
 mod nearest;
 mod segment;
-mod tile;
 
 pub(crate) use nearest::distance_to_tile;
 pub use segment::{Columns, Crossing, clearance, in_sight};
-pub use tile::{Bits, SIDE, Tile};
 
-use core::fmt;
-
-use crate::cell::{Cell, Extent};
-use crate::map::MOST_TILES;
-pub(crate) use tile::neighbours_of;
+use crate::cell::{Cell, Direction, Extent, ExtentError};
+use crate::tile::{MOST_TILES, TILE, TileIndex, TileSet, Tiles, bits, every_tile, neighbours};
 
 /// Height of the ground, in quarters of a cell: from 0 to 63.75 cells. Whole cells
 /// would be too coarse: each stair of a gentle slope would hide the ground below it.
@@ -58,7 +53,7 @@ pub struct Column {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Patch {
     /// Which tile.
-    pub tile: Tile,
+    pub tile: TileIndex,
     /// Which of its columns.
     pub cells: u64,
     /// Their heights by bit number; the other entries mean nothing.
@@ -68,39 +63,17 @@ pub struct Patch {
     pub fresh: bool,
 }
 
-/// The map does not fit into the number of tiles that its type has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct TooLarge {
-    /// What was asked for.
-    pub extent: Extent,
-    /// What there is room for.
-    pub room: Extent,
-}
-
-impl fmt::Display for TooLarge {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "a map of {} cells does not fit into {}",
-            self.extent, self.room
-        )
-    }
-}
-
-impl core::error::Error for TooLarge {}
-
 /// A height map of at most 8·`TW` × 8·`TH` columns.
 ///
 /// Takes 73 bytes a tile and 8 a row of tiles: 12.4 KB for 100×100 columns.
 #[derive(Clone, Debug)]
 pub struct Surface<const TW: usize, const TH: usize> {
     extent: Extent,
-    known: [[u64; TW]; TH],
-    heights: [[[Height; 64]; TW]; TH],
-    tile_frontiers: [[u8; TW]; TH],
-    /// Bit x of row y: tile (x, y) has frontiers.
-    frontier_rows: [u64; TH],
+    known: Tiles<u64, TW, TH>,
+    heights: Tiles<[Height; 64], TW, TH>,
+    frontier_counts: Tiles<u8, TW, TH>,
+    /// The tiles that have frontiers.
+    frontier_tiles: TileSet<TH>,
     frontiers: u32,
     known_columns: u32,
 }
@@ -116,43 +89,41 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         }
         Self {
             extent: Extent::new(0, 0),
-            known: [[0; TW]; TH],
-            heights: [[[Height(0); 64]; TW]; TH],
-            tile_frontiers: [[0; TW]; TH],
-            frontier_rows: [0; TH],
+            known: Tiles::all(0),
+            heights: Tiles::all([Height(0); 64]),
+            frontier_counts: Tiles::all(0),
+            frontier_tiles: TileSet::new(),
             frontiers: 0,
             known_columns: 0,
         }
     }
 
+    /// The largest map that fits.
+    pub const CAPACITY: Extent = Extent::new((TW * TILE) as u16, (TH * TILE) as u16);
+
     /// A map of `extent` with nothing known.
-    pub const fn new(extent: Extent) -> Result<Self, TooLarge> {
+    ///
+    /// # Errors
+    /// The extent is empty or larger than [`CAPACITY`](Self::CAPACITY).
+    pub fn new(extent: Extent) -> Result<Self, ExtentError> {
         let mut surface = Self::vacant();
-        match surface.fit(extent) {
-            Ok(()) => Ok(surface),
-            Err(error) => Err(error),
-        }
+        surface.reset(extent)?;
+        Ok(surface)
     }
 
-    /// Forgets all, in place, and is a map of `extent` from now on; unchanged if
-    /// that is too large.
-    pub fn reset(&mut self, extent: Extent) -> Result<(), TooLarge> {
-        self.fit(extent)?;
-        self.known = [[0; TW]; TH];
-        self.heights = [[[Height(0); 64]; TW]; TH];
-        self.tile_frontiers = [[0; TW]; TH];
-        self.frontier_rows = [0; TH];
+    /// Forgets all, in place, and is a map of `extent` from now on.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the map is then unchanged.
+    pub fn reset(&mut self, extent: Extent) -> Result<(), ExtentError> {
+        extent.fits(Self::CAPACITY)?;
+        self.extent = extent;
+        self.known.fill(0);
+        self.heights.fill([Height(0); 64]);
+        self.frontier_counts.fill(0);
+        self.frontier_tiles.clear();
         self.frontiers = 0;
         self.known_columns = 0;
-        Ok(())
-    }
-
-    const fn fit(&mut self, extent: Extent) -> Result<(), TooLarge> {
-        let room = Extent::new(TW as u16 * 8, TH as u16 * 8);
-        if extent.width > room.width || extent.height > room.height {
-            return Err(TooLarge { extent, room });
-        }
-        self.extent = extent;
         Ok(())
     }
 
@@ -163,12 +134,12 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
 
     /// Height of the ground at `cell`, if known. Cost: one read.
     pub fn height(&self, cell: Cell) -> Option<Height> {
-        let tile = Tile::of(cell)?;
-        let bit = Tile::bit(cell);
-        if self.known(tile) >> bit & 1 == 0 {
+        let (tile, bit) = TileIndex::of(cell)?;
+        if self.known(tile) & bit == 0 {
             return None;
         }
-        self.heights_of(tile)?.get(bit as usize).copied()
+        let heights = self.heights.get(tile)?;
+        heights.get(bit.trailing_zeros() as usize).copied()
     }
 
     /// Whether `cell` is inside the map and not known. Cost: one read.
@@ -178,7 +149,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
 
     /// Whether `cell` is a frontier. Cost: five reads.
     pub fn is_frontier(&self, cell: Cell) -> bool {
-        Tile::of(cell).is_some_and(|tile| self.frontier_cells(tile) >> Tile::bit(cell) & 1 == 1)
+        TileIndex::of(cell).is_some_and(|(tile, bit)| self.frontier_cells(tile) & bit != 0)
     }
 
     /// Number of frontiers; 0 once anything is known means that everything is.
@@ -191,86 +162,56 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         self.known_columns
     }
 
-    /// All tiles, row by row.
-    pub fn tiles(&self) -> impl Iterator<Item = Tile> + use<TW, TH> {
-        (0..TH as u8).flat_map(|y| (0..TW as u8).map(move |x| Tile { x, y }))
+    /// All tiles that the map has room for, row by row.
+    pub fn tiles(&self) -> impl Iterator<Item = TileIndex> + use<TW, TH> {
+        every_tile(TW, TH)
     }
 
     /// The tile behind `tile`, row by row and round again.
-    pub const fn tile_after(&self, tile: Tile) -> Tile {
-        if (tile.x as usize) + 1 < TW {
-            Tile {
-                x: tile.x + 1,
-                y: tile.y,
-            }
-        } else if (tile.y as usize) + 1 < TH {
-            Tile {
-                x: 0,
-                y: tile.y + 1,
-            }
-        } else {
-            Tile { x: 0, y: 0 }
-        }
+    pub const fn tile_after(&self, tile: TileIndex) -> TileIndex {
+        tile.after((TW as u8, TH as u8))
     }
 
     /// The known columns of `tile`; none outside.
-    pub fn known(&self, tile: Tile) -> u64 {
-        self.known
-            .get(usize::from(tile.y))
-            .and_then(|row| row.get(usize::from(tile.x)))
-            .copied()
-            .unwrap_or(0)
+    pub fn known(&self, tile: TileIndex) -> u64 {
+        self.known.word(tile)
     }
 
     /// The unknown columns of `tile` that lie inside the map.
-    pub fn unknown(&self, tile: Tile) -> u64 {
-        tile.inside(self.extent.width, self.extent.height) & !self.known(tile)
+    pub fn unknown(&self, tile: TileIndex) -> u64 {
+        tile.inside(self.extent) & !self.known(tile)
     }
 
     /// Number of frontiers in `tile`. Cost: one read.
-    pub fn frontiers_in(&self, tile: Tile) -> u8 {
-        self.tile_frontiers
-            .get(usize::from(tile.y))
-            .and_then(|row| row.get(usize::from(tile.x)))
-            .copied()
-            .unwrap_or(0)
+    pub fn frontiers_in(&self, tile: TileIndex) -> u8 {
+        self.frontier_counts.get(tile).copied().unwrap_or(0)
     }
 
     /// The frontiers of `tile`. Cost: five reads.
-    pub fn frontier_cells(&self, tile: Tile) -> u64 {
-        let at = |x: Option<u8>, y: Option<u8>| match (x, y) {
-            (Some(x), Some(y)) => self.unknown(Tile { x, y }),
-            _ => 0,
-        };
-        let around = [
-            at(Some(tile.x), tile.y.checked_sub(1)),
-            at(tile.x.checked_add(1), Some(tile.y)),
-            at(Some(tile.x), tile.y.checked_add(1)),
-            at(tile.x.checked_sub(1), Some(tile.y)),
-        ];
-        self.known(tile) & neighbours_of(self.unknown(tile), around)
+    pub fn frontier_cells(&self, tile: TileIndex) -> u64 {
+        self.known(tile) & neighbours(tile, |tile| self.unknown(tile))
     }
 
     /// Everything known of `tile`, as it travels.
-    pub fn patch(&self, tile: Tile, cells: u64) -> Patch {
+    pub fn patch(&self, tile: TileIndex, cells: u64) -> Patch {
         Patch {
             tile,
             cells: cells & self.known(tile),
-            heights: self.heights_of(tile).copied().unwrap_or([Height(0); 64]),
+            heights: self.heights.get(tile).copied().unwrap_or([Height(0); 64]),
             fresh: false,
         }
     }
 
     /// Learns one column; says whether it was unknown. Columns outside are ignored.
     pub fn learn(&mut self, column: Column) -> bool {
-        let Some(tile) = Tile::of(column.cell).filter(|_| self.extent.contains(column.cell)) else {
+        let Some((tile, bit)) = TileIndex::of(column.cell) else {
             return false;
         };
-        let bit = Tile::bit(column.cell);
-        let before = self.known(tile);
-        self.raise(tile, bit, column.height);
-        self.add(tile, 1 << bit);
-        before >> bit & 1 == 0
+        if !self.extent.contains(column.cell) {
+            return false;
+        }
+        self.raise(tile, bit.trailing_zeros(), column.height);
+        self.add(tile, bit)
     }
 
     /// Joins `patch` into the map; gives the columns that were unknown. Columns
@@ -278,9 +219,9 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     ///
     /// Cost: 64 columns, and five tiles if anything is new.
     pub fn merge(&mut self, patch: &Patch) -> u64 {
-        let cells = patch.cells & patch.tile.inside(self.extent.width, self.extent.height);
+        let cells = patch.cells & patch.tile.inside(self.extent);
         let new = cells & !self.known(patch.tile);
-        for bit in Bits(cells) {
+        for bit in bits(cells) {
             if let Some(&height) = patch.heights.get(bit as usize) {
                 self.raise(patch.tile, bit, height);
             }
@@ -289,61 +230,42 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         new
     }
 
-    fn heights_of(&self, tile: Tile) -> Option<&[Height; 64]> {
-        self.heights
-            .get(usize::from(tile.y))?
-            .get(usize::from(tile.x))
-    }
-
     /// The higher ground wins; an unknown column has height 0.
-    fn raise(&mut self, tile: Tile, bit: u32, height: Height) {
+    fn raise(&mut self, tile: TileIndex, bit: u32, height: Height) {
         if let Some(known) = self
             .heights
-            .get_mut(usize::from(tile.y))
-            .and_then(|row| row.get_mut(usize::from(tile.x)))
+            .get_mut(tile)
             .and_then(|heights| heights.get_mut(bit as usize))
         {
             *known = (*known).max(height);
         }
     }
 
-    fn add(&mut self, tile: Tile, cells: u64) {
-        let Some(known) = self
-            .known
-            .get_mut(usize::from(tile.y))
-            .and_then(|row| row.get_mut(usize::from(tile.x)))
-        else {
-            return;
-        };
-        let new = cells & !*known;
+    /// Says whether any of them is new.
+    fn add(&mut self, tile: TileIndex, cells: u64) -> bool {
+        let new = cells & !self.known(tile);
         if new == 0 {
-            return;
+            return false;
         }
-        *known |= new;
+        self.known.add(tile, new);
         self.known_columns += new.count_ones();
         self.recount(tile);
-        for (dx, dy) in [(0, -1), (1, 0), (0, 1), (-1, 0)] {
-            if let (Some(x), Some(y)) =
-                (tile.x.checked_add_signed(dx), tile.y.checked_add_signed(dy))
-            {
-                self.recount(Tile { x, y });
-            }
+        for direction in Direction::ALL {
+            self.recount(tile.beside(direction));
         }
+        true
     }
 
-    fn recount(&mut self, tile: Tile) {
+    fn recount(&mut self, tile: TileIndex) {
         let now = self.frontier_cells(tile).count_ones() as u8;
-        if let Some(count) = self
-            .tile_frontiers
-            .get_mut(usize::from(tile.y))
-            .and_then(|row| row.get_mut(usize::from(tile.x)))
-        {
+        if let Some(count) = self.frontier_counts.get_mut(tile) {
             self.frontiers = self.frontiers.saturating_sub(u32::from(*count)) + u32::from(now);
             *count = now;
-        }
-        if let Some(row) = self.frontier_rows.get_mut(usize::from(tile.y)) {
-            let bit = 1u64.checked_shl(u32::from(tile.x)).unwrap_or(0);
-            *row = if now > 0 { *row | bit } else { *row & !bit };
+            if now > 0 {
+                self.frontier_tiles.insert(tile);
+            } else {
+                self.frontier_tiles.remove(tile);
+            }
         }
     }
 }

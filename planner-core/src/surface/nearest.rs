@@ -2,11 +2,12 @@
 
 use heapless::Vec;
 
-use super::{Surface, Tile};
+use super::Surface;
 use crate::cell::Cell;
 use crate::list;
 use crate::math;
 use crate::point::Point;
+use crate::tile::{TileIndex, bits};
 
 impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     /// The `N` tiles with frontiers that are nearest to `from` on the ground plan,
@@ -14,8 +15,8 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     ///
     /// Cost: rows of tiles outwards from `from` until none can be nearer, one word
     /// each, and at most 2·`N` tiles in each.
-    pub fn nearest_frontier_tiles<const N: usize>(&self, from: Point) -> (Vec<Tile, N>, u32) {
-        let mut found: Vec<(f32, Tile), N> = Vec::new();
+    pub fn nearest_frontier_tiles<const N: usize>(&self, from: Point) -> (Vec<TileIndex, N>, u32) {
+        let mut found: Vec<(f32, TileIndex), N> = Vec::new();
         let mut work = 0;
         let here = from.cell();
         let column = (here.x.max(0) >> 3).min(63) as u8;
@@ -33,20 +34,20 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
             }
             for y in rows {
                 work += 1;
-                let word = self.frontier_rows.get(usize::from(y)).copied().unwrap_or(0);
+                let word = self.frontier_tiles.row(y);
                 let east = word.checked_shr(u32::from(column)).unwrap_or(0);
                 let west = word & !(u64::MAX.checked_shl(u32::from(column)).unwrap_or(0));
-                let to_east = super::Bits(east).map(|bit| column.saturating_add(bit as u8));
-                let to_west = BitsDown(west).map(|bit| bit as u8);
+                let to_east = bits(east).map(|bit| column.saturating_add(bit as u8));
+                let to_west = bits(west.reverse_bits()).map(|bit| 63 - bit as u8);
                 for x in to_east.take(N) {
                     work += 1;
-                    if !offer(&mut found, from, Tile { x, y }) {
+                    if !offer(&mut found, from, TileIndex { x, y }) {
                         break;
                     }
                 }
                 for x in to_west.take(N) {
                     work += 1;
-                    if !offer(&mut found, from, Tile { x, y }) {
+                    if !offer(&mut found, from, TileIndex { x, y }) {
                         break;
                     }
                 }
@@ -58,28 +59,17 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     /// The first tile with frontiers behind `tile`, row by row and round again.
     ///
     /// Cost: a word for each row.
-    pub fn next_frontier_tile(&self, tile: Tile) -> Option<Tile> {
-        let rows = TH as u8;
-        let behind = u64::MAX
-            .checked_shl(u32::from(tile.x).saturating_add(1))
-            .unwrap_or(0);
-        (0..=rows).find_map(|ahead| {
-            let y = tile.y.saturating_add(ahead).checked_rem(rows)?;
-            let word = self.frontier_rows.get(usize::from(y)).copied()?;
-            let word = match ahead {
-                0 => word & behind,
-                _ => word,
-            };
-            (word != 0).then(|| Tile {
-                x: word.trailing_zeros() as u8,
-                y,
-            })
-        })
+    pub fn next_frontier_tile(&self, tile: TileIndex) -> Option<TileIndex> {
+        self.frontier_tiles.after(tile)
     }
 }
 
 /// Puts `tile` in its place if it is near enough; says whether it was.
-fn offer<const N: usize>(found: &mut Vec<(f32, Tile), N>, from: Point, tile: Tile) -> bool {
+fn offer<const N: usize>(
+    found: &mut Vec<(f32, TileIndex), N>,
+    from: Point,
+    tile: TileIndex,
+) -> bool {
     let distance = distance_to_tile(from, tile);
     if found.is_full() {
         if distance >= farthest(found) {
@@ -91,19 +81,19 @@ fn offer<const N: usize>(found: &mut Vec<(f32, Tile), N>, from: Point, tile: Til
     list::insert(found, place, (distance, tile))
 }
 
-fn farthest<const N: usize>(found: &Vec<(f32, Tile), N>) -> f32 {
+fn farthest<const N: usize>(found: &Vec<(f32, TileIndex), N>) -> f32 {
     found
         .last()
         .map_or(f32::INFINITY, |&(distance, _)| distance)
 }
 
 fn distance_to_row(from: Point, y: u8) -> f32 {
-    let first = f32::from(Tile { x: 0, y }.cell(0).y) + 0.5;
+    let first = f32::from(TileIndex { x: 0, y }.cell(0).y) + 0.5;
     (first - from.y).max(from.y - first - 7.0).max(0.0)
 }
 
 /// Distance on the plan from `from` to the nearest cell centre that `tile` can have.
-pub(crate) fn distance_to_tile(from: Point, tile: Tile) -> f32 {
+pub(crate) fn distance_to_tile(from: Point, tile: TileIndex) -> f32 {
     let (north_west, south_east): (Cell, Cell) = (tile.cell(0), tile.cell(63));
     let beside = |at: f32, low: i16, high: i16| {
         (f32::from(low) + 0.5 - at)
@@ -114,17 +104,4 @@ pub(crate) fn distance_to_tile(from: Point, tile: Tile) -> f32 {
         beside(from.x, north_west.x, south_east.x),
         beside(from.y, north_west.y, south_east.y),
     )
-}
-
-/// The set bits of a word, descending.
-struct BitsDown(u64);
-
-impl Iterator for BitsDown {
-    type Item = u32;
-
-    fn next(&mut self) -> Option<u32> {
-        let bit = 63u32.checked_sub(self.0.leading_zeros())?;
-        self.0 &= !(1u64 << bit);
-        Some(bit)
-    }
 }

@@ -80,7 +80,7 @@ proptest! {
 
         let all = map.tiles().filter(|&tile| map.frontiers_in(tile) > 0).count();
         let mut round = std::collections::BTreeSet::new();
-        let mut tile = Tile { x: 1, y: 1 };
+        let mut tile = TileIndex { x: 1, y: 1 };
         for _ in 0..all {
             tile = map.next_frontier_tile(tile).unwrap();
             round.insert(tile);
@@ -125,5 +125,7 @@ proptest! {
 fn a_map_that_does_not_fit_is_refused() {
     let extent = Extent::new(25, 16);
     let error = Surface::<3, 2>::new(extent).unwrap_err();
-    assert_eq!(error.room, Extent::new(24, 16));
+    let capacity = Extent::new(24, 16);
+    let asked = extent;
+    assert_eq!(error, ExtentError::TooLarge { asked, capacity });
 }

@@ -6,11 +6,12 @@ use super::link::Link;
 use super::news::{MAX_RANGE, News, REPEATS};
 use super::peers::{Peer, Peers};
 use super::{Action, Limits, Motion, Status};
-use crate::cell::{Cell, Direction, Extent};
+use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::point::Point;
 use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN};
 use crate::robot::{RobotId, Stop, Wait};
-use crate::surface::{Bits, Column, Height, Patch, Surface, Tile, TooLarge, distance_to_tile};
+use crate::surface::{Column, Height, Patch, Surface, distance_to_tile};
+use crate::tile::{TileIndex, bits};
 
 /// Unknown tiles that the turn passes over in a step.
 const TURN_STRIDE: u8 = 8;
@@ -26,8 +27,8 @@ const FARTHEST: f32 = 65_536.0;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SetupError {
-    /// The map is larger than the planner's type allows.
-    TooLarge(TooLarge),
+    /// The planner's map does not hold the surface.
+    Extent(ExtentError),
     /// The sensor range is not above 0 and at most [`MAX_RANGE`].
     Range,
     /// Another limit is negative, not finite, or a step is not above 0.
@@ -37,7 +38,7 @@ pub enum SetupError {
 impl fmt::Display for SetupError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooLarge(error) => write!(f, "{error}"),
+            Self::Extent(error) => write!(f, "{error}"),
             Self::Range => write!(
                 f,
                 "the sensor range must be above 0 and at most {MAX_RANGE}"
@@ -52,9 +53,9 @@ impl fmt::Display for SetupError {
 
 impl core::error::Error for SetupError {}
 
-impl From<TooLarge> for SetupError {
-    fn from(error: TooLarge) -> Self {
-        Self::TooLarge(error)
+impl From<ExtentError> for SetupError {
+    fn from(error: ExtentError) -> Self {
+        Self::Extent(error)
     }
 }
 
@@ -67,7 +68,7 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     news: News,
     pub(super) peers: Peers,
     /// The tile of the own map that is told next.
-    turn: Tile,
+    turn: TileIndex,
     gain: f32,
     reward: f32,
     idle: u16,
@@ -125,7 +126,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             position: Point::new(0.0, 0.0, 0.0),
             news: News::new(),
             peers: Peers::new(),
-            turn: Tile { x: 0, y: 0 },
+            turn: TileIndex { x: 0, y: 0 },
             gain: 0.0,
             reward: 0.0,
             idle: 0,
@@ -182,7 +183,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.position = Point::new(0.0, 0.0, 0.0);
         self.news = News::new();
         self.peers = Peers::new();
-        self.turn = Tile { x: 0, y: 0 };
+        self.turn = TileIndex { x: 0, y: 0 };
         self.gain = 0.0;
         self.reward = 0.0;
         self.idle = 0;
@@ -526,7 +527,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// The tile to tell next: the first of a few of which something is known.
-    fn next_turn(&self) -> Tile {
+    fn next_turn(&self) -> TileIndex {
         let mut tile = self.turn;
         for _ in 0..TURN_STRIDE {
             tile = self.surface.tile_after(tile);
@@ -553,7 +554,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             if best.is_some_and(|(least, _)| distance_to_tile(self.position, tile) >= least) {
                 break;
             }
-            for bit in Bits(self.surface.frontier_cells(tile)) {
+            for bit in bits(self.surface.frontier_cells(tile)) {
                 work += 1;
                 let cell = tile.cell(bit);
                 let distance = self.position.plan_distance(Point::over(cell, 0.0));

@@ -5,7 +5,7 @@ use crate::radio::{
     FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, SurfaceFrame, position_on_wire,
 };
 use crate::robot::RobotId;
-use crate::surface::Tile;
+use crate::tile::TileIndex;
 
 use super::Status;
 use super::sender::Sender;
@@ -18,7 +18,7 @@ pub(super) struct Link {
     sender: Sender,
     /// The tile of the own map that is sent in turn, and the columns of it that were
     /// not sent yet.
-    turn: Tile,
+    turn: TileIndex,
     left: u64,
     since_turn: u8,
 }
@@ -28,7 +28,7 @@ impl Link {
     pub(super) const fn vacant() -> Self {
         Self {
             sender: Sender::vacant(),
-            turn: Tile { x: 0, y: 0 },
+            turn: TileIndex { x: 0, y: 0 },
             left: 0,
             since_turn: 0,
         }
@@ -38,7 +38,7 @@ impl Link {
         let grid = GridId::of(extent, config.origin_mm, config.cell_mm);
         Self {
             sender: Sender::new(config, grid, id),
-            turn: Tile { x: 0, y: 0 },
+            turn: TileIndex { x: 0, y: 0 },
             left: !0,
             since_turn: 0,
         }
@@ -72,12 +72,12 @@ impl Link {
     }
 
     /// The tile that is sent in turn, and the columns of it that are due.
-    pub(super) const fn turn(&self) -> (Tile, u64) {
+    pub(super) const fn turn(&self) -> (TileIndex, u64) {
         (self.turn, self.left)
     }
 
     /// Goes on to another tile.
-    pub(super) fn pass(&mut self, tile: Tile) {
+    pub(super) fn pass(&mut self, tile: TileIndex) {
         self.turn = tile;
         self.left = !0;
     }

@@ -4,7 +4,7 @@
 use super::MAX_PEERS;
 use crate::cell::Cell;
 use crate::point::Point;
-use crate::surface::{Bits, SIDE, Tile};
+use crate::tile::{TILE, TileIndex, bits};
 
 /// Tiles along one side of the window around a robot.
 const WINDOW: usize = 4;
@@ -13,7 +13,7 @@ const WINDOW: usize = 4;
 /// the robot stands on the tiles.
 pub const MAX_RANGE: f32 = 12.0;
 const _: () = assert!(
-    2 * MAX_RANGE as usize + SIDE <= WINDOW * SIDE,
+    2 * MAX_RANGE as usize + TILE <= WINDOW * TILE,
     "the window holds every column in range, wherever in its tile the robot is"
 );
 
@@ -35,18 +35,18 @@ impl Window {
         words: [[0; WINDOW]; WINDOW],
     };
 
-    fn word_mut(&mut self, tile: Tile) -> Option<&mut u64> {
+    fn word_mut(&mut self, tile: TileIndex) -> Option<&mut u64> {
         let x = usize::try_from(i16::from(tile.x) - self.origin.0).ok()?;
         let y = usize::try_from(i16::from(tile.y) - self.origin.1).ok()?;
         self.words.get_mut(y)?.get_mut(x)
     }
 
-    fn word(mut self, tile: Tile) -> u64 {
+    fn word(mut self, tile: TileIndex) -> u64 {
         self.word_mut(tile).map_or(0, |word| *word)
     }
 
     /// The tiles inside the map with a bit set.
-    fn tiles(self) -> impl Iterator<Item = (Tile, u64)> {
+    fn tiles(self) -> impl Iterator<Item = (TileIndex, u64)> {
         self.words
             .into_iter()
             .enumerate()
@@ -54,7 +54,7 @@ impl Window {
                 row.into_iter().enumerate().filter_map(move |(x, word)| {
                     let x = u8::try_from(self.origin.0.saturating_add(x as i16)).ok()?;
                     let y = u8::try_from(self.origin.1.saturating_add(y as i16)).ok()?;
-                    (word != 0).then_some((Tile { x, y }, word))
+                    (word != 0).then_some((TileIndex { x, y }, word))
                 })
             })
     }
@@ -109,16 +109,18 @@ impl News {
 
     /// The robot itself sees `cell` for the first time.
     pub(super) fn add(&mut self, cell: Cell) {
-        let Some(tile) = Tile::of(cell) else { return };
+        let Some((tile, bit)) = TileIndex::of(cell) else {
+            return;
+        };
         for windows in [&mut self.steps, &mut self.unsent] {
             if let Some(word) = windows.first_mut().and_then(|step| step.word_mut(tile)) {
-                *word |= 1 << Tile::bit(cell);
+                *word |= bit;
             }
         }
     }
 
     /// Columns to send next, newest first, and whether they are of this very step.
-    pub(super) fn next_unsent(&self) -> Option<(Tile, u64, bool)> {
+    pub(super) fn next_unsent(&self) -> Option<(TileIndex, u64, bool)> {
         (0..).zip(&self.unsent).find_map(|(age, step)| {
             let (tile, cells) = step.tiles().next()?;
             Some((tile, cells, age == 0))
@@ -126,7 +128,7 @@ impl News {
     }
 
     /// These columns were sent: they wait for the next step.
-    pub(super) fn mark_sent(&mut self, tile: Tile, cells: u64) {
+    pub(super) fn mark_sent(&mut self, tile: TileIndex, cells: u64) {
         let waiting = |step: &&mut Window| step.word(tile) & cells != 0;
         if let Some(word) = self
             .unsent
@@ -139,7 +141,7 @@ impl News {
     }
 
     /// Another robot saw `cells` of `tile` first in this same step.
-    pub(super) fn share(&mut self, tile: Tile, cells: u64) {
+    pub(super) fn share(&mut self, tile: TileIndex, cells: u64) {
         let mut carry = cells & self.steps.first().map_or(0, |step| step.word(tile));
         for plane in &mut self.others {
             if let Some(word) = plane.word_mut(tile) {
@@ -159,7 +161,7 @@ impl News {
         };
         let mut reward = 0.0;
         for (tile, word) in own.tiles() {
-            for bit in Bits(word) {
+            for bit in bits(word) {
                 let others = self.others.iter().rev().fold(0u8, |number, plane| {
                     number << 1 | (plane.word(tile) >> bit & 1) as u8
                 });
@@ -170,7 +172,7 @@ impl News {
     }
 
     /// Tiles with own discoveries of the step `age` steps ago, and which cells.
-    pub(super) fn tiles(&self, age: usize) -> impl Iterator<Item = (Tile, u64)> + use<> {
+    pub(super) fn tiles(&self, age: usize) -> impl Iterator<Item = (TileIndex, u64)> + use<> {
         self.steps
             .get(age)
             .copied()
@@ -188,16 +190,13 @@ mod tests {
         let mut news = News::new();
         news.begin(Point::new(20.0, 20.0, 5.0));
         let cell = Cell::new(12, 27);
-        let tile = Tile::of(cell).unwrap();
+        let (tile, bit) = TileIndex::of(cell).unwrap();
         news.add(cell);
         for others in 1..=15u8 {
             news.share(tile, !0);
             assert_eq!(news.reward(), 1.0 / f32::from(others + 1));
         }
-        assert_eq!(
-            news.tiles(0).collect::<std::vec::Vec<_>>(),
-            [(tile, 1 << Tile::bit(cell))]
-        );
+        assert_eq!(news.tiles(0).collect::<std::vec::Vec<_>>(), [(tile, bit)]);
         news.begin(Point::new(21.0, 20.0, 5.0));
         assert_eq!(news.reward(), 0.0);
         assert_eq!(news.tiles(1).count(), 1);

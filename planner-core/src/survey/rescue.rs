@@ -52,8 +52,9 @@ use super::{Action, Knowledge};
 use crate::cell::{Cell, Direction};
 use crate::point::Point;
 use crate::robot::Stop;
-use crate::surface::{Bits, Columns, Tile};
-use way::{Way, word_of};
+use crate::surface::Columns;
+use crate::tile::{TileIndex, Tiles, bits};
+use way::Way;
 
 /// Steps without gain after which the rescue begins.
 pub const PATIENCE: u16 = 50;
@@ -82,14 +83,14 @@ const TIME: u16 = 8;
 /// Which frontiers have been looked over since the map last grew, and the one that is.
 #[derive(Clone, Debug)]
 pub(crate) struct Rescue<const TW: usize, const TH: usize> {
-    tried: [[u64; TW]; TH],
+    tried: Tiles<u64, TW, TH>,
     /// Columns that refused a flight in this round.
-    closed: [[u64; TW]; TH],
+    closed: Tiles<u64, TW, TH>,
     /// The column closed last, and whether by a robot that was heard of.
     obstacle: (Cell, bool),
     /// Frontiers that were given up in this round for what was in the way, and whether
     /// there are any.
-    barred: [[u64; TW]; TH],
+    barred: Tiles<u64, TW, TH>,
     is_barred: bool,
     /// Whether borders of columns are crossed one by one.
     careful: bool,
@@ -107,7 +108,7 @@ pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     target: Option<Cell>,
     /// The search for the next target: the tile that comes next, how many are left,
     /// and the nearest frontier found so far.
-    cursor: Tile,
+    cursor: TileIndex,
     left: usize,
     nearest: Option<(f32, Cell)>,
     way: Way<TW, TH>,
@@ -123,10 +124,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// All zero, until [`reset`](Self::reset).
     pub(crate) const fn vacant() -> Self {
         Self {
-            tried: [[0; TW]; TH],
-            closed: [[0; TW]; TH],
+            tried: Tiles::all(0),
+            closed: Tiles::all(0),
             obstacle: (Cell::new(0, 0), false),
-            barred: [[0; TW]; TH],
+            barred: Tiles::all(0),
             is_barred: false,
             careful: false,
             bumps: 0,
@@ -139,7 +140,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             legs: 0,
             known_columns: 0,
             target: None,
-            cursor: Tile { x: 0, y: 0 },
+            cursor: TileIndex { x: 0, y: 0 },
             left: 0,
             nearest: None,
             way: Way::vacant(),
@@ -157,7 +158,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.legs = 0;
         self.known_columns = 0;
         self.target = None;
-        self.cursor = Tile { x: 0, y: 0 };
+        self.cursor = TileIndex { x: 0, y: 0 };
         self.way.begin(None);
         self.edge = 0;
         self.climbing = false;
@@ -166,7 +167,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
 
     /// Nothing counts as tried.
     fn begin_spell(&mut self) {
-        self.tried = [[0; TW]; TH];
+        self.tried.fill(0);
         self.bumps = 0;
         self.round = 0;
         self.rest = 0;
@@ -176,12 +177,12 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// What was given up for what was in the way does not count as tried, and nothing
     /// as closed.
     fn begin_round(&mut self) {
-        let barred = self.barred.iter_mut().flatten();
-        for (tried, barred) in self.tried.iter_mut().flatten().zip(barred) {
+        let barred = self.barred.values_mut();
+        for (tried, barred) in self.tried.values_mut().zip(barred) {
             *tried &= !core::mem::take(barred);
         }
         self.is_barred = false;
-        self.closed = [[0; TW]; TH];
+        self.closed.fill(0);
         // At first it does something else rather than wait.
         self.waits = if self.round > 0 { WAITS } else { 0 };
         self.begin_search();
@@ -234,13 +235,12 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         let Some(target) = self.target else {
             return self.end_round(knowledge);
         };
-        if word_of(&mut self.closed, target).is_some_and(|word| *word >> Tile::bit(target) & 1 == 1)
-        {
+        if self.closed.contains(target) {
             self.give_up(target);
             return knowledge.hover(Pause::Search);
         }
         let Some((edge, place)) = edge_of(knowledge, target, self.edge) else {
-            self.mark_tried(target);
+            self.tried.insert(target);
             self.target = None;
             return knowledge.hover(Pause::Search);
         };
@@ -402,10 +402,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
 
     /// From now on no way leads over `column`; the robot's own stays open.
     fn close(&mut self, column: Cell, here: Cell) {
-        if column != here
-            && let Some(word) = word_of(&mut self.closed, column)
-        {
-            *word |= 1 << Tile::bit(column);
+        if column != here {
+            self.closed.insert(column);
         }
         self.way.begin(self.target);
     }
@@ -413,22 +411,19 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// Something keeps the robot from looking over `frontier`.
     fn bar(&mut self, frontier: Cell) {
         self.is_barred = true;
-        if let Some(word) = word_of(&mut self.barred, frontier) {
-            *word |= 1 << Tile::bit(frontier);
-        }
+        self.barred.insert(frontier);
     }
 
     /// The same, and it is not tried any further in this round.
     fn give_up(&mut self, target: Cell) {
         self.bar(target);
-        self.mark_tried(target);
+        self.tried.insert(target);
         self.target = None;
     }
 
     /// No way leads to the target, nor to anything that is connected with it.
     fn give_up_all(&mut self) {
-        let words = self.tried.iter_mut().flatten();
-        let words = words.zip(self.barred.iter_mut().flatten());
+        let words = self.tried.values_mut().zip(self.barred.values_mut());
         for ((tried, barred), wet) in words.zip(self.way.wet()) {
             *barred |= wet & !*tried;
             *tried |= wet;
@@ -482,10 +477,9 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             if knowledge.surface().frontiers_in(tile) == 0 {
                 continue;
             }
-            let tried = word_of(&mut self.tried, tile.cell(0)).map_or(0, |word| *word);
-            let open = knowledge.surface().frontier_cells(tile) & !tried;
+            let open = knowledge.surface().frontier_cells(tile) & !self.tried.word(tile);
             knowledge.look_at(open.count_ones());
-            for bit in Bits(open) {
+            for bit in bits(open) {
                 let cell = tile.cell(bit);
                 let distance = here.plan_distance(Point::over(cell, 0.0));
                 if self.nearest.is_none_or(|(least, _)| distance < least) {
@@ -516,12 +510,6 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.climbing = true;
         let rise = knowledge.limits().ceiling - knowledge.position().z;
         self.patience = ((2.0 * rise / knowledge.limits().step) as u16).saturating_add(8);
-    }
-
-    fn mark_tried(&mut self, cell: Cell) {
-        if let Some(word) = word_of(&mut self.tried, cell) {
-            *word |= 1 << Tile::bit(cell);
-        }
     }
 }
 

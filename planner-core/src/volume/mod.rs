@@ -14,9 +14,8 @@ pub use sight::in_sight;
 
 use core::fmt;
 
-use crate::cell::{Cell, Extent};
-use crate::map::MOST_TILES;
-use crate::surface::{Tile, neighbours_of};
+use crate::cell::{Cell, Direction, Extent, ExtentError};
+use crate::tile::{MOST_TILES, TILE, TileIndex, neighbours};
 
 /// One cube of a box. The unit is the cube's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -60,6 +59,18 @@ impl Voxel {
             .saturating_add(dz.saturating_mul(dz))
     }
 
+    /// The tile of which level it lies in, and its bit there; `None` where no box is.
+    pub(crate) fn place(self) -> Option<(TileIndex, u8, u64)> {
+        let (tile, bit) = TileIndex::of(self.cell())?;
+        Some((tile, u8::try_from(self.z).ok()?, bit))
+    }
+
+    /// The voxel of bit number `bit` (0 to 63) of a tile of a level.
+    pub(crate) const fn of(tile: TileIndex, z: u8, bit: u32) -> Self {
+        let Cell { x, y } = tile.cell(bit);
+        Self::new(x, y, z as i16)
+    }
+
     /// Its column.
     pub const fn cell(self) -> Cell {
         Cell::new(self.x, self.y)
@@ -88,7 +99,7 @@ pub enum Content {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoxelPatch {
     /// Which tile.
-    pub tile: Tile,
+    pub tile: TileIndex,
     /// Of which level.
     pub z: u8,
     /// Its known voxels.
@@ -96,18 +107,6 @@ pub struct VoxelPatch {
     /// Those of them that are occupied.
     pub occupied: u64,
 }
-
-/// The box does not fit into the number of tiles and levels that its type has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DoesNotFit;
-
-impl fmt::Display for DoesNotFit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "the box does not fit into the map's tiles and levels")
-    }
-}
-
-impl core::error::Error for DoesNotFit {}
 
 /// A map of at most 8·`TW` × 8·`TH` × `L` voxels: 16 bytes for each tile of a level,
 /// 6.4 KB for 40×40×16 voxels.
@@ -143,35 +142,31 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// A box of `extent` columns and `levels` levels with nothing known.
     ///
     /// # Errors
-    /// The box is larger than the map.
-    pub const fn new(extent: Extent, levels: u8) -> Result<Self, DoesNotFit> {
+    /// The box is empty or larger than the map.
+    pub fn new(extent: Extent, levels: u8) -> Result<Self, ExtentError> {
         let mut volume = Self::vacant();
-        match volume.fit(extent, levels) {
-            Ok(()) => Ok(volume),
-            Err(error) => Err(error),
-        }
+        volume.reset(extent, levels)?;
+        Ok(volume)
     }
 
     /// Forgets all, in place, and is a box of this size from now on.
     ///
     /// # Errors
-    /// The box is larger than the map; it has not changed then.
-    pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
-        self.fit(extent, levels)?;
+    /// As [`new`](Self::new); the map is then unchanged.
+    pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), ExtentError> {
+        extent.fits(Extent::new((TW * TILE) as u16, (TH * TILE) as u16))?;
+        if usize::from(levels) > L {
+            return Err(ExtentError::TooHigh {
+                asked: levels,
+                capacity: L as u8,
+            });
+        }
+        self.extent = extent;
+        self.levels = levels;
         self.known.reset();
         self.occupied.reset();
         self.known_voxels = 0;
         self.frontiers = 0;
-        Ok(())
-    }
-
-    const fn fit(&mut self, extent: Extent, levels: u8) -> Result<(), DoesNotFit> {
-        if extent.width as usize > 8 * TW || extent.height as usize > 8 * TH || levels as usize > L
-        {
-            return Err(DoesNotFit);
-        }
-        self.extent = extent;
-        self.levels = levels;
         Ok(())
     }
 
@@ -215,20 +210,19 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// Learns one voxel; says whether that was news. Voxels outside are ignored.
     pub fn learn(&mut self, voxel: Voxel, occupied: bool) -> bool {
-        let Some(tile) = Tile::of(voxel.cell()).filter(|_| self.contains(voxel)) else {
+        let Some((tile, z, bit)) = voxel.place() else {
             return false;
         };
-        let bit = 1 << Tile::bit(voxel.cell());
         self.merge(&VoxelPatch {
             tile,
-            z: voxel.z as u8,
+            z,
             known: bit,
             occupied: if occupied { bit } else { 0 },
         })
     }
 
     /// Everything known of a tile of a level, as it travels.
-    pub fn patch(&self, tile: Tile, z: u8) -> VoxelPatch {
+    pub fn patch(&self, tile: TileIndex, z: u8) -> VoxelPatch {
         VoxelPatch {
             tile,
             z,
@@ -261,7 +255,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// The voxel that the robot is in is free, whatever the map says of it: its own place
     /// is surer than any look. Cost: 98 words where the map says otherwise.
     pub fn stand(&mut self, voxel: Voxel) {
-        let (Some(tile), Ok(z)) = (Tile::of(voxel.cell()), u8::try_from(voxel.z)) else {
+        let Some((tile, z, _)) = voxel.place() else {
             return;
         };
         if !self.contains(voxel) || self.content(voxel) != Content::Occupied {
@@ -276,47 +270,32 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     }
 
     /// Number of frontiers in a tile of a level and the six beside it.
-    fn frontiers_about(&self, tile: Tile, z: u8) -> u32 {
-        let sides = around(tile).map(|tile| tile.map(|tile| (tile, z)));
-        let above = z.checked_add(1).map(|z| (tile, z));
-        let below = z.checked_sub(1).map(|z| (tile, z));
-        [Some((tile, z)), above, below]
+    fn frontiers_about(&self, tile: TileIndex, z: u8) -> u32 {
+        let sides = Direction::ALL.map(|direction| (tile.beside(direction), z));
+        let levels = [z, z.wrapping_add(1), z.wrapping_sub(1)].map(|z| (tile, z));
+        levels
             .into_iter()
             .chain(sides)
-            .flatten()
             .map(|(tile, z)| self.frontier_voxels(tile, z).count_ones())
             .sum()
     }
 
     /// The frontiers of a tile of a level. Cost: 14 words.
-    fn frontier_voxels(&self, tile: Tile, z: u8) -> u64 {
-        let is_beside = self.beside(tile, z, Self::unknown);
-        is_beside & self.free(tile, z)
+    fn frontier_voxels(&self, tile: TileIndex, z: u8) -> u64 {
+        self.free(tile, z) & beside(tile, z, |tile, z| self.unknown(tile, z))
     }
 
     /// The unknown voxels of a tile of a level that are beside a free one. Cost: 14 words.
-    pub(crate) fn unknown_beside_free(&self, tile: Tile, z: u8) -> u64 {
+    pub(crate) fn unknown_beside_free(&self, tile: TileIndex, z: u8) -> u64 {
         let unknown = self.unknown(tile, z);
         if unknown == 0 {
             return 0;
         }
-        unknown & self.beside(tile, z, Self::free)
-    }
-
-    /// The voxels of a tile of a level that share a face with one of `layer`.
-    fn beside(&self, tile: Tile, z: u8, layer: impl Fn(&Self, Tile, u8) -> u64) -> u64 {
-        let at = |tile: Option<Tile>, z: Option<u8>| match (tile, z) {
-            (Some(tile), Some(z)) => layer(self, tile, z),
-            _ => 0,
-        };
-        let around = around(tile).map(|tile| at(tile, Some(z)));
-        let above = at(Some(tile), z.checked_add(1));
-        let below = at(Some(tile), z.checked_sub(1));
-        neighbours_of(layer(self, tile, z), around) | above | below
+        unknown & beside(tile, z, |tile, z| self.free(tile, z))
     }
 
     /// The free voxels of a tile of a level.
-    fn free(&self, tile: Tile, z: u8) -> u64 {
+    fn free(&self, tile: TileIndex, z: u8) -> u64 {
         self.known.word(tile, z) & !self.occupied.word(tile, z)
     }
 
@@ -328,70 +307,42 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     }
 
     /// Those of a tile of a level. Cost: 14 words.
-    pub(crate) fn poses(&self, tile: Tile, z: u8) -> u64 {
-        let bad = |map: &Self, tile, z| map.inside(tile, z) & !map.free(tile, z);
-        self.inside(tile, z) & !(bad(self, tile, z) | self.beside(tile, z, bad))
+    pub(crate) fn poses(&self, tile: TileIndex, z: u8) -> u64 {
+        let bad = |tile, z| self.inside(tile, z) & !self.free(tile, z);
+        self.inside(tile, z) & !(bad(tile, z) | beside(tile, z, bad))
     }
 
     /// The unknown voxels of a tile of a level.
-    pub(crate) fn unknown(&self, tile: Tile, z: u8) -> u64 {
+    pub(crate) fn unknown(&self, tile: TileIndex, z: u8) -> u64 {
         self.inside(tile, z) & !self.known.word(tile, z)
     }
 
     /// The voxels of a tile of a level that lie in the box.
-    pub(crate) fn inside(&self, tile: Tile, z: u8) -> u64 {
+    pub(crate) fn inside(&self, tile: TileIndex, z: u8) -> u64 {
         if z < self.levels {
-            tile.inside(self.extent.width, self.extent.height)
+            tile.inside(self.extent)
         } else {
             0
         }
     }
 
     /// The tile and level behind these, and round again.
-    pub fn after(&self, tile: Tile, z: u8) -> (Tile, u8) {
-        let (width, height) = (
-            self.extent.width.div_ceil(8) as u8,
-            self.extent.height.div_ceil(8) as u8,
-        );
-        if tile.x.saturating_add(1) < width {
-            (
-                Tile {
-                    x: tile.x.saturating_add(1),
-                    y: tile.y,
-                },
-                z,
-            )
-        } else if tile.y.saturating_add(1) < height {
-            (
-                Tile {
-                    x: 0,
-                    y: tile.y.saturating_add(1),
-                },
-                z,
-            )
-        } else if z.saturating_add(1) < self.levels {
-            (Tile { x: 0, y: 0 }, z.saturating_add(1))
-        } else {
-            (Tile { x: 0, y: 0 }, 0)
+    pub fn after(&self, tile: TileIndex, z: u8) -> (TileIndex, u8) {
+        match (tile.after(self.extent.tiles()), z.saturating_add(1)) {
+            (first @ TileIndex { x: 0, y: 0 }, z) if z < self.levels => (first, z),
+            (first @ TileIndex { x: 0, y: 0 }, _) => (first, 0),
+            (next, _) => (next, z),
         }
     }
 }
 
-/// The tiles north, east, south and west of `tile`.
-pub(crate) const fn around(tile: Tile) -> [Option<Tile>; 4] {
-    const fn at(x: Option<u8>, y: Option<u8>) -> Option<Tile> {
-        match (x, y) {
-            (Some(x), Some(y)) => Some(Tile { x, y }),
-            _ => None,
-        }
-    }
-    let Tile { x, y } = tile;
-    [
-        at(Some(x), y.checked_sub(1)),
-        at(x.checked_add(1), Some(y)),
-        at(Some(x), y.checked_add(1)),
-        at(x.checked_sub(1), Some(y)),
-    ]
+/// The voxels of a tile of a level that share a face with one of a layer. Asks for the
+/// layer of seven tiles, also of some that no box has.
+pub(crate) fn beside(tile: TileIndex, z: u8, layer: impl Fn(TileIndex, u8) -> u64) -> u64 {
+    // There are at most 255 levels: below the lowest comes one that no box has.
+    neighbours(tile, |tile| layer(tile, z))
+        | layer(tile, z.wrapping_add(1))
+        | layer(tile, z.wrapping_sub(1))
 }
 
 #[cfg(test)]

@@ -28,9 +28,9 @@ proptest! {
             map.learn(voxel, occupied);
         }
         for voxel in all().filter(|&voxel| map.contains(voxel)) {
-            let tile = Tile::of(voxel.cell()).unwrap();
-            let word = map.poses(tile, voxel.z as u8);
-            prop_assert_eq!(word >> Tile::bit(voxel.cell()) & 1 == 1, map.is_pose(voxel));
+            let (tile, z, bit) = voxel.place().unwrap();
+            let word = map.poses(tile, z);
+            prop_assert_eq!(word & bit != 0, map.is_pose(voxel));
         }
         let known: std::collections::BTreeSet<_> =
             learnt.iter().map(|l| l.0).filter(|&v| map.contains(v)).collect();
@@ -42,9 +42,10 @@ proptest! {
         prop_assert_eq!(map.frontiers() as usize, known.iter().copied().filter(is_frontier).count());
         for voxel in all().filter(|&voxel| map.contains(voxel)) {
             let is_free = |voxel| map.contains(voxel) && map.content(voxel) == Content::Free;
-            let word = map.unknown_beside_free(Tile::of(voxel.cell()).unwrap(), voxel.z as u8);
+            let (tile, z, bit) = voxel.place().unwrap();
+            let word = map.unknown_beside_free(tile, z);
             prop_assert_eq!(
-                word >> Tile::bit(voxel.cell()) & 1 == 1,
+                word & bit != 0,
                 is_unknown(voxel) && voxel.beside().into_iter().any(is_free)
             );
         }
@@ -64,7 +65,7 @@ proptest! {
         }
         let mut merged = map();
         for part in order {
-            let (mut tile, mut z) = (Tile { x: 0, y: 0 }, 0);
+            let (mut tile, mut z) = (TileIndex { x: 0, y: 0 }, 0);
             for _ in 0..2 * 2 * 6 {
                 merged.merge(&parts[part].patch(tile, z));
                 (tile, z) = merged.after(tile, z);

@@ -2,8 +2,8 @@
 
 use super::gain::RAY;
 use super::{SLICE, VoxelSurvey, WAY};
-use crate::surface::{Tile, neighbours_of};
-use crate::volume::{Layer, Volume, Voxel, around};
+use crate::tile::TileIndex;
+use crate::volume::{Layer, Volume, Voxel, beside};
 
 /// What a step of the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     /// The distance modulo 3 of what becomes wet.
     layer: u8,
     /// Where the look at all words for it stands.
-    cursor: (Tile, u8),
+    cursor: (TileIndex, u8),
     /// Whether anything has become wet in it.
     grows: bool,
     /// Poses of the word at the cursor that are left to rivals.
@@ -55,7 +55,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             low: Layer::EMPTY,
             high: Layer::EMPTY,
             layer: 0,
-            cursor: (Tile { x: 0, y: 0 }, 0),
+            cursor: (TileIndex { x: 0, y: 0 }, 0),
             grows: false,
             passed: 0,
             spare: None,
@@ -72,7 +72,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.low.reset();
         self.high.reset();
         self.layer = 1;
-        self.cursor = (Tile { x: 0, y: 0 }, 0);
+        self.cursor = (TileIndex { x: 0, y: 0 }, 0);
         self.grows = false;
         self.passed = 0;
         self.spare = None;
@@ -91,7 +91,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
     }
 
     /// What is wet of a tile of a level at `distance` modulo 3.
-    fn at(&self, distance: u8, tile: Tile, z: u8) -> u64 {
+    fn at(&self, distance: u8, tile: TileIndex, z: u8) -> u64 {
         let (low, high) = (self.low.word(tile, z), self.high.word(tile, z));
         match distance {
             0 => low & !high,
@@ -105,10 +105,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         let (tile, z) = self.cursor;
         let wet = self.low.word(tile, z) | self.high.word(tile, z);
         let before = |tile, z| self.at((self.layer + 2) % 3, tile, z);
-        let sides = around(tile).map(|tile| tile.map_or(0, |tile| before(tile, z)));
-        let above = z.checked_add(1).map_or(0, |z| before(tile, z));
-        let below = z.checked_sub(1).map_or(0, |z| before(tile, z));
-        let reached = neighbours_of(before(tile, z), sides) | above | below;
+        let reached = beside(tile, z, before);
         if reached == 0 {
             return;
         }
@@ -145,8 +142,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             let open = wet & !self.done.word(tile, z) & !self.far.passed;
             if open != 0 {
                 // The cursor stays until all of them are done or passed.
-                let cell = tile.cell(open.trailing_zeros());
-                let pose = Voxel::new(cell.x, cell.y, i16::from(z));
+                let pose = Voxel::of(tile, z, open.trailing_zeros());
                 self.work = self.work.saturating_add(1);
                 let is_a_rivals = self.is_a_rivals(pose);
                 // Of what is left to rivals one is enough to know of.
@@ -164,7 +160,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             }
             self.far.passed = 0;
             self.far.cursor = self.volume.after(tile, z);
-            if self.far.cursor == (Tile { x: 0, y: 0 }, 0) {
+            if self.far.cursor == (TileIndex { x: 0, y: 0 }, 0) {
                 if !self.far.grows {
                     self.far.stage = Stage::Idle;
                     if let Some(spare) = self.far.spare.take() {

@@ -1,7 +1,7 @@
 //! What a pose would show.
 
 use super::VoxelSurvey;
-use crate::surface::{Bits, Tile};
+use crate::tile::{TileIndex, bits};
 use crate::volume::{Content, Voxel, in_sight};
 
 /// Words that a ray looks at, about.
@@ -64,7 +64,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// The tiles of levels that have a voxel within range of `pose`, and a few more.
-    fn words_within_range(&self, pose: Voxel) -> impl Iterator<Item = (Tile, u8)> + use<TW, TH, L> {
+    fn words_within_range(
+        &self,
+        pose: Voxel,
+    ) -> impl Iterator<Item = (TileIndex, u8)> + use<TW, TH, L> {
         let reach = i16::from(self.range);
         let span = move |at: i16, end: i16| {
             let last = at.saturating_add(reach).min(end.saturating_sub(1));
@@ -77,16 +80,13 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let extent = self.volume.extent();
         span(pose.z, self.volume.levels().into()).flat_map(move |z| {
             tiles(pose.y, extent.height).flat_map(move |y| {
-                tiles(pose.x, extent.width).map(move |x| (Tile { x, y }, z as u8))
+                tiles(pose.x, extent.width).map(move |x| (TileIndex { x, y }, z as u8))
             })
         })
     }
 }
 
 /// The voxels of a tile of a level whose bits are set.
-pub(super) fn voxels(tile: Tile, z: u8, word: u64) -> impl Iterator<Item = Voxel> {
-    Bits(word).map(move |bit| {
-        let cell = tile.cell(bit);
-        Voxel::new(cell.x, cell.y, i16::from(z))
-    })
+pub(super) fn voxels(tile: TileIndex, z: u8, word: u64) -> impl Iterator<Item = Voxel> {
+    bits(word).map(move |bit| Voxel::of(tile, z, bit))
 }

@@ -64,12 +64,12 @@ mod news;
 
 use heapless::Vec;
 
-use crate::cell::Extent;
+use crate::cell::{Extent, ExtentError};
 use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, VoxelFrame};
 use crate::robot::{RobotId, Stop, Wait};
-use crate::surface::Tile;
 use crate::survey::{Pause, Peer, Peers, Sender};
-use crate::volume::{Content, DoesNotFit, Layer, Volume, Voxel, VoxelPatch};
+use crate::tile::{TileIndex, every_tile};
+use crate::volume::{Content, Layer, Volume, Voxel, VoxelPatch};
 use far::Far;
 use news::News;
 
@@ -144,7 +144,7 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     news: News<TW, TH, L>,
     /// Where the look at all poses in turn stands, and those of its word that were
     /// looked at.
-    turn: (Tile, u8),
+    turn: (TileIndex, u8),
     passed: u64,
     /// Voxels that a look should have shown and did not, known by now or not.
     missed: Layer<TW, TH, L>,
@@ -190,7 +190,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             peers: Peers::new(),
             sender: Sender::vacant(),
             news: News::new(),
-            turn: (Tile { x: 0, y: 0 }, 0),
+            turn: (TileIndex { x: 0, y: 0 }, 0),
             passed: 0,
             missed: Layer::EMPTY,
             has_missed: false,
@@ -218,7 +218,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// # Errors
     /// The box is larger than the map.
-    pub fn new(extent: Extent, levels: u8, config: Config, id: u8) -> Result<Self, DoesNotFit> {
+    pub fn new(extent: Extent, levels: u8, config: Config, id: u8) -> Result<Self, ExtentError> {
         let mut robot = Self::vacant();
         robot.reset(extent, levels, config, id)?;
         Ok(robot)
@@ -234,7 +234,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         levels: u8,
         config: Config,
         id: u8,
-    ) -> Result<(), DoesNotFit> {
+    ) -> Result<(), ExtentError> {
         self.volume.reset(extent, levels)?;
         let LinkConfig {
             origin_mm, cell_mm, ..
@@ -246,7 +246,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.peers = Peers::new();
         self.sender = Sender::new(config.link, grid, RobotId(id));
         self.news.reset();
-        self.turn = (Tile { x: 0, y: 0 }, 0);
+        self.turn = (TileIndex { x: 0, y: 0 }, 0);
         self.passed = 0;
         self.refused = Voxel::new(0, 0, 0);
         self.round_known = 0;
@@ -320,7 +320,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             // Where the robot is nothing else is.
             let occupied = occupied && voxel != at;
             if self.volume.learn(voxel, occupied)
-                && let (Some(tile), Ok(z)) = (Tile::of(voxel.cell()), u8::try_from(voxel.z))
+                && let Some((tile, z, _)) = voxel.place()
             {
                 self.news.add(tile, z);
             }
@@ -590,10 +590,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             .or_else(|| self.first_of(|tile, z| self.volume.unknown_beside_free(tile, z)))
     }
 
-    fn first_of(&self, word: impl Fn(Tile, u8) -> u64) -> Option<Voxel> {
-        let mut tiles = (0..self.volume.levels()).flat_map(|z| {
-            (0..TH as u8).flat_map(move |y| (0..TW as u8).map(move |x| (Tile { x, y }, z)))
-        });
+    fn first_of(&self, word: impl Fn(TileIndex, u8) -> u64) -> Option<Voxel> {
+        let mut tiles =
+            (0..self.volume.levels()).flat_map(|z| every_tile(TW, TH).map(move |tile| (tile, z)));
         tiles.find_map(|(tile, z)| gain::voxels(tile, z, word(tile, z)).next())
     }
 
@@ -611,8 +610,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             }
             let bit = open.trailing_zeros();
             self.passed |= 1 << bit;
-            let cell = tile.cell(bit);
-            self.gain(Voxel::new(cell.x, cell.y, z.into()), 1);
+            self.gain(Voxel::of(tile, z, bit), 1);
         }
     }
 

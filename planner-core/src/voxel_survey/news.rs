@@ -1,7 +1,7 @@
 //! Which pieces of the map the others should hear of next.
 
 use crate::radio::{MAX_PATCHES, VoxelFrame};
-use crate::surface::Tile;
+use crate::tile::{TileIndex, Tiles};
 use crate::volume::{Volume, VoxelPatch};
 
 /// Times that a piece is told after it has changed, so that a lost frame does little
@@ -19,50 +19,51 @@ const STRIDE: u16 = 256;
 #[derive(Clone, Debug)]
 pub(super) struct News<const TW: usize, const TH: usize, const L: usize> {
     /// How often each is still to be told.
-    left: [[[u8; TW]; TH]; L],
+    left: [Tiles<u8, TW, TH>; L],
     /// Number of those above 0.
     waiting: u32,
-    next: (Tile, u8),
-    turn: (Tile, u8),
+    next: (TileIndex, u8),
+    turn: (TileIndex, u8),
     since_turn: u8,
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> News<TW, TH, L> {
     pub(super) const fn new() -> Self {
         Self {
-            left: [[[0; TW]; TH]; L],
+            left: [Tiles::all(0); L],
             waiting: 0,
-            next: (Tile { x: 0, y: 0 }, 0),
-            turn: (Tile { x: 0, y: 0 }, 0),
+            next: (TileIndex { x: 0, y: 0 }, 0),
+            turn: (TileIndex { x: 0, y: 0 }, 0),
             since_turn: 0,
         }
     }
 
     /// Starts anew, in place.
     pub(super) fn reset(&mut self) {
-        self.left = [[[0; TW]; TH]; L];
+        for level in &mut self.left {
+            level.fill(0);
+        }
         self.waiting = 0;
-        self.next = (Tile { x: 0, y: 0 }, 0);
-        self.turn = (Tile { x: 0, y: 0 }, 0);
+        self.next = (TileIndex { x: 0, y: 0 }, 0);
+        self.turn = (TileIndex { x: 0, y: 0 }, 0);
         self.since_turn = 0;
     }
 
     /// Something of this piece was seen for the first time.
-    pub(super) fn add(&mut self, tile: Tile, z: u8) {
+    pub(super) fn add(&mut self, tile: TileIndex, z: u8) {
         self.set(tile, z, TELLS);
     }
 
     /// Everybody has heard of this piece: it waits for the turn only.
-    pub(super) fn forget(&mut self, tile: Tile, z: u8) {
+    pub(super) fn forget(&mut self, tile: TileIndex, z: u8) {
         self.set(tile, z, 0);
     }
 
-    fn set(&mut self, tile: Tile, z: u8, tells: u8) {
+    fn set(&mut self, tile: TileIndex, z: u8, tells: u8) {
         if let Some(left) = self
             .left
             .get_mut(usize::from(z))
-            .and_then(|level| level.get_mut(usize::from(tile.y)))
-            .and_then(|row| row.get_mut(usize::from(tile.x)))
+            .and_then(|level| level.get_mut(tile))
         {
             self.waiting = self
                 .waiting
@@ -74,11 +75,10 @@ impl<const TW: usize, const TH: usize, const L: usize> News<TW, TH, L> {
         }
     }
 
-    fn left(&self, tile: Tile, z: u8) -> u8 {
+    fn left(&self, tile: TileIndex, z: u8) -> u8 {
         self.left
             .get(usize::from(z))
-            .and_then(|level| level.get(usize::from(tile.y)))
-            .and_then(|row| row.get(usize::from(tile.x)))
+            .and_then(|level| level.get(tile))
             .copied()
             .unwrap_or(0)
     }
@@ -114,7 +114,7 @@ impl<const TW: usize, const TH: usize, const L: usize> News<TW, TH, L> {
         }
     }
 
-    fn next_waiting(&mut self, volume: &Volume<TW, TH, L>) -> Option<(Tile, u8)> {
+    fn next_waiting(&mut self, volume: &Volume<TW, TH, L>) -> Option<(TileIndex, u8)> {
         if self.waiting == 0 {
             return None;
         }

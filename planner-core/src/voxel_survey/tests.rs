@@ -182,8 +182,8 @@ proptest! {
                             patches: heapless::Vec::new(),
                         };
                         for &(x, y, z, known, occupied) in patches {
-                            let tile = Tile { x, y };
-                            let known = known & tile.inside(EXTENT.width, EXTENT.height);
+                            let tile = TileIndex { x, y };
+                            let known = known & tile.inside(EXTENT);
                             if known != 0 {
                                 frame.add(VoxelPatch { tile, z, known, occupied: occupied & known });
                             }
@@ -630,9 +630,10 @@ fn a_reset_robot_is_a_new_one() {
     let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 3).unwrap();
     world.fly(&mut robot, &mut START.clone(), &Vec::new(), 0, 20_000);
     let before = std::format!("{robot:?}");
+    let (asked, capacity) = (Extent::new(17, 3), Extent::new(16, 16));
     assert_eq!(
-        robot.reset(Extent::new(17, 3), LEVELS, CONFIG, 1),
-        Err(DoesNotFit)
+        robot.reset(asked, LEVELS, CONFIG, 1),
+        Err(ExtentError::TooLarge { asked, capacity })
     );
     assert_eq!(std::format!("{robot:?}"), before);
     robot.reset(EXTENT, LEVELS, CONFIG, 0).unwrap();

@@ -5,10 +5,12 @@ use bridge::{
     VERSION, Welcome, fingerprint,
 };
 use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
+use planner_core::ExtentError;
 use planner_core::explorer::Explorer;
 use planner_core::local_frontiers::LocalFrontiers;
-use planner_core::map::{ExtentError, Map, TileIndex, TileSet};
+use planner_core::map::Map;
 use planner_core::radio::{MAX_LEN, TileRecord};
+use planner_core::tile::{TileIndex, TileSet};
 use planner_core::{Cell, Extent, Planner, RobotId};
 use static_cell::ConstStaticCell;
 

@@ -5,9 +5,10 @@ use core::fmt::{self, Write as _};
 use cortex_m_semihosting::hio;
 use firmware::Stopwatch;
 use planner_core::explorer::{Config, Explorer, MAX_OTHERS};
-use planner_core::map::{Map, Tile, TileIndex};
+use planner_core::map::{Map, Tile};
 use planner_core::radio::MAX_LEN;
 use planner_core::sight::look;
+use planner_core::tile::TileIndex;
 use planner_core::{Action, Activity, Cell, Extent, Motion, Planner, RobotId, Status};
 use static_cell::ConstStaticCell;
 

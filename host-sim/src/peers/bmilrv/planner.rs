@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard};
 
-use planner_core::map::ExtentError;
+use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
 use planner_core::{
     Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,

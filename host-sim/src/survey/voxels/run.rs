@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
-use planner_core::surface::Tile;
+use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::{Action, Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Point, Stop};
@@ -214,7 +214,7 @@ impl Simulation {
             medium: Medium {
                 loss: scenario.loss,
                 dice: Dice::new(scenario.seed),
-                turns: vec![(Tile { x: 0, y: 0 }, 0); scenario.robots],
+                turns: vec![(TileIndex { x: 0, y: 0 }, 0); scenario.robots],
             },
             visible,
             known: HashSet::new(),
@@ -325,7 +325,7 @@ struct Medium {
     loss: f64,
     dice: Dice,
     /// Where each robot stands that tells its map word by word.
-    turns: Vec<(Tile, u8)>,
+    turns: Vec<(TileIndex, u8)>,
 }
 
 impl Medium {
@@ -338,8 +338,8 @@ impl Medium {
     fn share_maps(&mut self, robots: &mut [Box<Robot>], views: &[Vec<(Voxel, bool)>]) {
         let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
         for ((robot, view), turn) in robots.iter().zip(views).zip(&mut self.turns) {
-            let tile = |voxel: Voxel| Tile::of(voxel.cell()).expect("inside");
-            let mut touched: BTreeSet<(Tile, u8)> = view
+            let tile = |voxel: Voxel| TileIndex::of(voxel.cell()).expect("inside").0;
+            let mut touched: BTreeSet<(TileIndex, u8)> = view
                 .iter()
                 .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
                 .collect();

@@ -100,7 +100,7 @@ fn record(extent: Extent) -> impl Strategy<Value = TileRecord> {
     let layers = (any::<u64>(), any::<u64>(), any::<u64>());
     (0..columns, 0..rows, layers).prop_map(move |(x, y, (known, obstacle, visited))| {
         let at = TileIndex::new(x, y);
-        let known = known & extent_mask(extent, at);
+        let known = known & at.inside(extent);
         let obstacle = obstacle & known;
         TileRecord {
             at,

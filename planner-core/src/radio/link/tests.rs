@@ -1,7 +1,8 @@
 use super::*;
 use crate::cell::Cell;
-use crate::map::{Tile, TileIndex};
+use crate::map::Tile;
 use crate::robot::Activity;
+use crate::tile::TileIndex;
 
 const EXTENT: Extent = Extent::new(29, 19);
 const STATUS: Status = Status {

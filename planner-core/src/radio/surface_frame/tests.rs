@@ -35,8 +35,8 @@ fn full() -> SurfaceFrame {
         target: Some(Cell::new(99, 60)),
         stopped: false,
         records: heapless::Vec::from_slice(&[
-            record(Tile { x: 2, y: 1 }, false, true, 0x8000_0003, 16),
-            record(Tile { x: 12, y: 6 }, true, false, 0x0000_000f, 250),
+            record(TileIndex { x: 2, y: 1 }, false, true, 0x8000_0003, 16),
+            record(TileIndex { x: 12, y: 6 }, true, false, 0x0000_000f, 250),
         ])
         .unwrap(),
         ..quiet()
@@ -164,10 +164,10 @@ fn frame() -> impl Strategy<Value = SurfaceFrame> {
             };
             let mut taken = 0;
             for (x, y, south, fresh, cells, seed) in records {
-                let tile = Tile { x, y };
+                let tile = TileIndex { x, y };
                 let patch = Patch {
                     tile,
-                    cells: tile.inside(EXTENT.width, EXTENT.height),
+                    cells: tile.inside(EXTENT),
                     heights: core::array::from_fn(|i| Height(seed[i % 32].wrapping_add(i as u8))),
                     fresh,
                 };

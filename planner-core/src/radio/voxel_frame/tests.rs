@@ -25,7 +25,7 @@ fn quiet() -> VoxelFrame {
 
 fn full() -> VoxelFrame {
     let patch = |x, y, z, known, occupied| VoxelPatch {
-        tile: Tile { x, y },
+        tile: TileIndex { x, y },
         z,
         known,
         occupied,
@@ -193,8 +193,8 @@ fn frame() -> impl Strategy<Value = VoxelFrame> {
                 patches: heapless::Vec::new(),
             };
             for (x, y, z, known, occupied) in patches {
-                let tile = Tile { x, y };
-                let known = known & tile.inside(EXTENT.width, EXTENT.height);
+                let tile = TileIndex { x, y };
+                let known = known & tile.inside(EXTENT);
                 if known != 0 {
                     frame.add(VoxelPatch {
                         tile,
@@ -247,7 +247,7 @@ mod keyed {
         let mut frame = full();
         frame.patches.pop();
         for z in 0..2 {
-            let tile = Tile { x: 1, y: 1 };
+            let tile = TileIndex { x: 1, y: 1 };
             frame
                 .patches
                 .push(VoxelPatch {

@@ -3,6 +3,7 @@
 use heapless::Vec;
 use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Hearsay, LinkConfig, TileRecord};
+use planner_core::role::Role;
 use planner_core::survey::SetupError;
 use planner_core::tile::TileIndex;
 use planner_core::{
@@ -59,7 +60,7 @@ pub enum Request<'a> {
         /// Which one.
         planner: SurveyorConfig,
         /// The robot's number.
-        id: u8,
+        id: RobotId,
         /// Size of the surface.
         extent: Extent,
     },
@@ -86,7 +87,7 @@ pub enum Request<'a> {
     /// What another robot told about itself; [`Reply::Done`].
     Hear(RobotId, Status),
     /// [`Reply::Done`].
-    Adopt(explorer::Role),
+    Adopt(Role),
     /// [`Reply::Memory`].
     Memory,
     /// The image ends, without an answer.
@@ -126,7 +127,7 @@ pub struct State {
     /// The tile that the robot stands on.
     pub here: TileRecord,
     /// What the robot is about to do.
-    pub role: Option<explorer::Role>,
+    pub role: Option<Role>,
     /// Why it waits.
     pub waiting: Option<Wait>,
     /// What it has from others.

@@ -6,9 +6,9 @@
 use heapless::Vec;
 use planner_core::radio::{FrameError, LinkConfig};
 use planner_core::surface::{Column, Height, Patch, Surface};
-use planner_core::survey::{Action, Knowledge, Motion, Status};
+use planner_core::survey::Knowledge;
 use planner_core::tile::{TileIndex, bits};
-use planner_core::{Point, Wait, coordinated_survey, fcao};
+use planner_core::{Action, Cell, Motion, Point, RobotId, Status, Wait, coordinated_survey, fcao};
 use serde::{Deserialize, Serialize};
 
 use crate::{Cost, Memory};
@@ -53,7 +53,7 @@ pub enum SurveyRequest<'a> {
     /// From here the robot sees the columns put aside; [`SurveyReply::Told`].
     Observe(Point),
     /// What another robot told about itself; [`SurveyReply::Done`].
-    Hear(u8, Status),
+    Hear(RobotId, Status<Point, Cell>),
     /// A piece of another robot's map; [`SurveyReply::Done`].
     #[serde(borrow)]
     Merge(PatchRecord<'a>),
@@ -80,7 +80,7 @@ pub struct SurveyAnswer {
     /// What the planner's call took.
     pub cost: Cost,
     /// What the robot would tell the others about itself.
-    pub status: Status,
+    pub status: Status<Point, Cell>,
     /// What the call returned.
     pub reply: SurveyReply,
 }
@@ -95,7 +95,7 @@ pub enum SurveyReply {
     /// What was decided, and by what.
     Decided {
         /// What to do.
-        action: Action,
+        action: Action<Point>,
         /// Why the robot hovers.
         waiting: Option<Wait>,
         /// Work of the decision.

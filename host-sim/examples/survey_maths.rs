@@ -17,8 +17,8 @@ use bridge::SurveyorConfig;
 use clap::Parser;
 use host_sim::experiments::{Interval, mean};
 use host_sim::survey::{Here, Host, Planner, Scenario, Terrain, run, run_on};
-use planner_core::survey::{Action, Knowledge, Limits, SetupError, Surveyor};
-use planner_core::{Cell, Extent};
+use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
+use planner_core::{Action, Cell, Extent, Point, RobotId};
 
 const PLANNERS: [Planner; 3] = [
     Planner::CoordinatedSurvey,
@@ -48,7 +48,7 @@ struct Arguments {
 }
 
 /// What a robot decided, and where it said that it goes.
-type Decision = (Action, Option<Cell>);
+type Decision = (Action<Point>, Option<Cell>);
 
 /// The decisions of each robot of a run.
 type Decisions = BTreeMap<u8, Vec<Decision>>;
@@ -61,7 +61,7 @@ struct Books {
 }
 
 struct Scribe<const T: usize> {
-    id: u8,
+    id: RobotId,
     robot: Box<dyn Surveyor<T, T>>,
     recorded: Option<std::vec::IntoIter<Decision>>,
     own: Rc<RefCell<Decisions>>,
@@ -73,9 +73,9 @@ impl Host for Books {
         extent: Extent,
         limits: Limits,
         planner: SurveyorConfig,
-        id: u8,
+        id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
-        let of_robot = |decisions: &Decisions| decisions.get(&id).cloned().unwrap_or_default();
+        let of_robot = |decisions: &Decisions| decisions.get(&id.0).cloned().unwrap_or_default();
         Ok(Box::new(Scribe {
             id,
             robot: Here.surveyor(extent, limits, planner, id)?,
@@ -98,20 +98,24 @@ impl<const T: usize> Surveyor<T, T> for Scribe<T> {
         self.robot.knowledge_mut()
     }
 
-    fn tick(&mut self) -> Action {
-        let own = (self.robot.tick(), self.knowledge().target());
-        self.own.borrow_mut().entry(self.id).or_default().push(own);
+    fn tick(&mut self) -> Action<Point> {
+        let own = (self.robot.tick(), self.knowledge().goal());
+        self.own
+            .borrow_mut()
+            .entry(self.id.0)
+            .or_default()
+            .push(own);
         let Some((action, target)) = self.recorded.as_mut().and_then(Iterator::next) else {
             return own.0;
         };
-        self.knowledge_mut().set_target(target);
+        self.knowledge_mut().set_goal(target);
         action
     }
 }
 
 fn differ((own, _): &Decision, (recorded, _): &Decision) -> bool {
     match (own, recorded) {
-        (Action::Fly(own), Action::Fly(recorded)) => own.distance(*recorded) > SAME,
+        (Action::Move(own), Action::Move(recorded)) => own.distance(*recorded) > SAME,
         (own, recorded) => own != recorded,
     }
 }

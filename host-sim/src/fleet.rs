@@ -5,9 +5,7 @@ mod faults;
 use std::sync::Arc;
 
 use planner_core::tile::TileIndex;
-use planner_core::{
-    Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, explorer,
-};
+use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, role};
 
 pub use faults::{
     Arrival, Blind, Closure, Death, FaultText, Faults, LostPose, Restart, Resume, SensorFailure,
@@ -383,7 +381,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         if other.has_exchanged {
             return Meeting::Refused(Motion::Held);
         }
-        match explorer::exchange(&mine, robot.position, &theirs, other.position) {
+        match role::exchange(&mine, robot.position, &theirs, other.position) {
             None => Meeting::Refused(Motion::Held),
             Some((for_robot, for_other)) => {
                 robot.planner.join(other.planner.map(), &self.all_tiles);

@@ -19,12 +19,14 @@ mod point;
 pub mod radio;
 pub mod rng;
 mod robot;
+pub mod role;
 pub mod sight;
 pub mod surface;
 pub mod survey;
 pub mod tile;
 pub mod volume;
 pub mod voxel_survey;
+mod zeroed;
 
 pub use cell::{Cell, Direction, Extent, ExtentError};
 pub use map::{Learnt, Map};

@@ -1,9 +1,9 @@
 //! The verbs that every planner has.
 
-use crate::explorer::Role;
 use crate::map::{Learnt, Map};
 use crate::radio::{FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
+use crate::role::Role;
 use crate::sight::Sighting;
 use crate::tile::{TileIndex, TileSet};
 
@@ -78,7 +78,7 @@ pub trait Planner<const TW: usize, const TH: usize> {
         None
     }
 
-    /// What the robot is about to do, for an [`exchange`](crate::explorer::exchange)
+    /// What the robot is about to do, for an [`exchange`](crate::role::exchange)
     /// with a robot in its way. `None`: this planner does not exchange roles.
     fn role(&self) -> Option<Role> {
         None

@@ -1,5 +1,5 @@
-//! What a robot is called, does and says: the plain data that planners exchange with
-//! their robot and with each other.
+//! What a robot is called, does and says: the plain data that planners of all kinds
+//! exchange with their robot and with each other.
 
 use core::fmt;
 
@@ -13,18 +13,20 @@ use crate::planner::Planner;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotId(pub u8);
 
-/// What the robot shall do now. Every [`Planner::tick`] returns one.
+/// What the robot shall do now. Every [`Planner::tick`] returns one. `S` is a step: a
+/// direction on a grid, a point over a surface, a voxel; `P` a place, as in [`Stop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Action {
-    /// Go to the neighbouring cell; then [`Planner::report`] how it went.
-    Move(Direction),
+pub enum Action<S = Direction, P = Cell> {
+    /// Make this step; then [`Planner::report`] how it went. On a grid it leads to the
+    /// neighbouring cell, in the air straight to a place at most one step away.
+    Move(S),
     /// Stand still for this tick. [`Planner::waiting`] says why, and where to look.
     Wait,
     /// Done, for this reason. Every later tick returns the same, until
     /// [`Planner::resume`].
-    Stop(Stop),
+    Stop(Stop<P>),
 }
 
 /// Why a robot stopped. "Done" and "gave up" never look alike. `P` is a place of the
@@ -230,7 +232,7 @@ pub enum Wait {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Motion {
-    /// The robot is on the cell that it was sent to.
+    /// The robot is where it was sent.
     Moved,
     /// Something stood in the way; the robot is where it was.
     Blocked,
@@ -240,17 +242,24 @@ pub enum Motion {
 }
 
 /// What a robot says about itself, and remembers of the others: hints, never
-/// needed for completeness.
+/// needed for completeness. `P` is where a robot can be, `G` what it can be going to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Status {
+pub struct Status<P = Cell, G = P> {
     /// Where it is.
-    pub position: Cell,
+    pub position: P,
     /// Where it is going.
-    pub goal: Option<Cell>,
+    pub goal: Option<G>,
     /// What it has come to.
     pub activity: Activity,
+}
+
+impl<P, G> Status<P, G> {
+    /// Whether the robot has stopped for good.
+    pub const fn has_stopped(&self) -> bool {
+        matches!(self.activity, Activity::Stopped)
+    }
 }
 
 /// The part of a robot's state that others decide by.
@@ -264,4 +273,15 @@ pub enum Activity {
     SecondChance,
     /// Stopped for good.
     Stopped,
+}
+
+impl Activity {
+    /// That of a robot that knows no second chance.
+    pub const fn stopped_if(has_stopped: bool) -> Self {
+        if has_stopped {
+            Self::Stopped
+        } else {
+            Self::Exploring
+        }
+    }
 }

@@ -2,15 +2,15 @@
 
 use core::hint::black_box;
 
-use planner_core::Point;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::MAX_LEN;
 use planner_core::surface::{Column, Height, Patch};
-use planner_core::survey::{Limits, Motion, Status, Surveyor};
+use planner_core::survey::{Limits, Surveyor};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::{self, VoxelSurvey};
+use planner_core::{Activity, Motion, Point, Status};
 use static_cell::ConstStaticCell;
 
 use super::any;
@@ -22,7 +22,7 @@ static COORDINATED: ConstStaticCell<CoordinatedSurvey<8, 8>> =
 pub(super) fn call_all() {
     if let Some(robot) = FCAO.try_take() {
         let config = black_box(fcao::Config::new(limits(), 1));
-        let _ = black_box(robot.reset(any::extent(), config, any::id().0));
+        let _ = black_box(robot.reset(config, any::id(), any::extent()));
         drive(robot);
     }
     if let Some(robot) = COORDINATED.try_take() {
@@ -32,7 +32,7 @@ pub(super) fn call_all() {
             seed: 1,
             choice: Choice::Cubic,
         });
-        let _ = black_box(robot.reset(any::extent(), config, any::id().0));
+        let _ = black_box(robot.reset(config, any::id(), any::extent()));
         drive(robot);
     }
     fly_among_voxels();
@@ -47,10 +47,10 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Surveyor<TW, TH>) {
     robot.observe(point(), &black_box([column; 4]));
     let status = Status {
         position: point(),
-        target: black_box(Some(any::cell())),
-        stopped: black_box(false),
+        goal: black_box(Some(any::cell())),
+        activity: black_box(Activity::Exploring),
     };
-    robot.hear(any::id().0, status);
+    robot.hear(any::id(), status);
     let patch = Patch {
         tile: tile(),
         cells: black_box(1),
@@ -78,17 +78,17 @@ fn fly_among_voxels() {
         link: any::link(),
     });
     let levels = black_box(8);
-    let robot = VoxelSurvey::<4, 4, 16>::new(any::extent(), levels, config, any::id().0);
+    let robot = VoxelSurvey::<4, 4, 16>::new(config, any::id(), any::extent(), levels);
     let Ok(mut robot) = robot else {
         return;
     };
     robot.observe(voxel(), &black_box([(voxel(), false); 4]));
-    let status = voxel_survey::Status {
+    let status = Status {
         position: voxel(),
         goal: black_box(Some(voxel())),
-        stopped: black_box(false),
+        activity: black_box(Activity::Exploring),
     };
-    robot.hear(any::id().0, status);
+    robot.hear(any::id(), status);
     let mut frame = black_box([0; MAX_LEN]);
     black_box(robot.transmit(&mut frame));
     let _ = black_box(robot.receive(any::bytes(&frame)));

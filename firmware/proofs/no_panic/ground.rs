@@ -2,10 +2,11 @@
 
 use core::hint::black_box;
 
-use planner_core::explorer::{self, Explorer, exchange};
+use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::Map;
 use planner_core::radio::MAX_LEN;
+use planner_core::role::exchange;
 use planner_core::sight::{Beam, Pose, RangeScan, look};
 use planner_core::tile::TileIndex;
 use planner_core::{Activity, Motion, Planner, Sighting, Status};

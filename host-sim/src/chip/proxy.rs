@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
-use planner_core::explorer::Role;
 use planner_core::map::Tile;
 use planner_core::radio::{Frame, FrameError, GridId, Heard, Hearsay, MAX_LEN, TileRecord};
+use planner_core::role::Role;
 use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,

@@ -8,8 +8,8 @@ use bridge::{
 };
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
-use planner_core::survey::{Action, Knowledge, Motion, Status, Surveyor};
-use planner_core::{Extent, Point, RobotId, Wait};
+use planner_core::survey::{Knowledge, Surveyor};
+use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status, Wait};
 
 use super::emulator::Chip;
 use super::error::ChipError;
@@ -21,7 +21,7 @@ use crate::measured::Call;
 /// A chip that fails leaves the reason in the book, as for a
 /// [`Proxy`](super::proxy::Proxy).
 pub(super) struct SurveyProxy<const T: usize> {
-    id: u8,
+    id: RobotId,
     /// `None` when it has failed.
     chip: Option<Chip>,
     book: Rc<Book>,
@@ -29,7 +29,7 @@ pub(super) struct SurveyProxy<const T: usize> {
     /// What the chip knows too.
     mirror: Mirror<T>,
     /// What the chip said last of itself.
-    status: Status,
+    status: Status<Point, Cell>,
     waiting: Option<Wait>,
     work: u32,
 }
@@ -46,9 +46,9 @@ impl<const T: usize> Surveyor<T, T> for Mirror<T> {
         &mut self.0
     }
 
-    fn tick(&mut self) -> Action {
+    fn tick(&mut self) -> Action<Point> {
         self.0.begin_tick();
-        Action::Hover
+        Action::Wait
     }
 }
 
@@ -58,7 +58,7 @@ impl<const T: usize> SurveyProxy<T> {
         book: Rc<Book>,
         knowledge: Knowledge<T, T>,
         planner: SurveyorConfig,
-        id: u8,
+        id: RobotId,
     ) -> Self {
         let extent = knowledge.surface().extent();
         let mirror = Mirror(knowledge);
@@ -125,13 +125,13 @@ impl<const T: usize> SurveyProxy<T> {
 
     fn misunderstood(&mut self, reply: &SurveyReply) {
         self.fail(ChipError::Dialogue {
-            robot: RobotId(self.id),
+            robot: self.id,
             problem: format!("{reply:?} answers something else"),
         });
     }
 
     fn other_map(&mut self) {
-        let robot = RobotId(self.id);
+        let robot = self.id;
         self.fail(ChipError::OtherMap { robot });
     }
 }
@@ -177,7 +177,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         }
     }
 
-    fn hear(&mut self, id: u8, status: Status) {
+    fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
         self.mirror.hear(id, status);
         self.tell(Some(Call::Hear), &SurveyRequest::Hear(id, status));
     }
@@ -189,11 +189,11 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         self.tell(Some(Call::Join), &SurveyRequest::Merge(record));
     }
 
-    fn tick(&mut self) -> Action {
+    fn tick(&mut self) -> Action<Point> {
         self.mirror.tick();
         let reply = self.ask(Some(Call::Tick), &SurveyRequest::Tick);
         let Some(reply) = reply else {
-            return Action::Hover;
+            return Action::Wait;
         };
         let SurveyReply::Decided {
             action,
@@ -205,12 +205,12 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         } = reply
         else {
             self.misunderstood(&reply);
-            return Action::Hover;
+            return Action::Wait;
         };
         self.work = work;
         self.waiting = waiting;
         // What was decided goes into frames.
-        self.mirror.0.set_target(self.status.target);
+        self.mirror.0.set_goal(self.status.goal);
         if let Action::Stop(reason) = action {
             self.mirror.0.stop(reason);
         }
@@ -259,7 +259,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         heard
     }
 
-    fn status(&self) -> Status {
+    fn status(&self) -> Status<Point, Cell> {
         self.status
     }
 

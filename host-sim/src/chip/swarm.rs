@@ -110,10 +110,10 @@ impl survey::Host for Swarm {
         extent: Extent,
         limits: Limits,
         planner: SurveyorConfig,
-        id: u8,
+        id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
-        let knowledge = Knowledge::new(extent, limits, *planner.link(), RobotId(id))?;
-        let chip = Chip::start(RobotId(id), self.machine, &self.image, self.limit);
+        let knowledge = Knowledge::new(extent, limits, *planner.link(), id)?;
+        let chip = Chip::start(id, self.machine, &self.image, self.limit);
         let book = self.book.clone();
         Ok(Box::new(SurveyProxy::new(
             chip, book, knowledge, planner, id,

@@ -3,9 +3,9 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::surface::Surface;
-use planner_core::survey::{Action, Knowledge, Limits, PATIENCE, SetupError, Surveyor};
+use planner_core::survey::{Knowledge, Limits, PATIENCE, SetupError, Surveyor};
 use planner_core::tile::bits;
-use planner_core::{Cell, Extent, Point, RobotId, Stop};
+use planner_core::{Action, Cell, Extent, Point, RobotId, Stop};
 
 /// Steps without gain after which a [`Follower`] gives up. The published methods never
 /// do.
@@ -63,7 +63,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action {
+    fn tick(&mut self) -> Action<Point> {
         let action = match self.knowledge.begin_tick() {
             Some(action) => action,
             None => self.decide(),
@@ -73,7 +73,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
 }
 
 impl<const TW: usize, const TH: usize> Follower<TW, TH> {
-    fn decide(&mut self) -> Action {
+    fn decide(&mut self) -> Action<Point> {
         if let Some((_, to)) = self.knowledge.take_refused() {
             self.refused = Some(to.cell());
         } else if self.knowledge.gain() > 0.0 {
@@ -93,7 +93,7 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
         } else {
             self.order
         };
-        self.knowledge.set_target(target);
+        self.knowledge.set_goal(target);
         self.knowledge.look_at(work);
         let Limits {
             range,
@@ -111,7 +111,7 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
                 self.knowledge
                     .step_towards(Point::over(target, 0.0), cruise)
             })
-            .map_or(Action::Hover, Action::Fly)
+            .map_or(Action::Wait, Action::Move)
     }
 }
 

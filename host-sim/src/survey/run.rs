@@ -9,8 +9,8 @@ use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::surface::{Patch, Surface, clearance};
-use planner_core::survey::{Action, Limits, Motion, SetupError, Status, Surveyor};
-use planner_core::{Extent, Point, RobotId};
+use planner_core::survey::{Limits, SetupError, Surveyor};
+use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
 
 use super::baselines::{Follower, Guide, Rounds, assign};
 use super::error::SurveyError;
@@ -31,7 +31,7 @@ pub trait Host {
         extent: Extent,
         limits: Limits,
         planner: SurveyorConfig,
-        id: u8,
+        id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError>;
 
     /// Whether the run has to end because a planner is lost.
@@ -48,12 +48,12 @@ impl Host for Here {
         extent: Extent,
         _: Limits,
         planner: SurveyorConfig,
-        id: u8,
+        id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
         Ok(match planner {
-            SurveyorConfig::Fcao(config) => Box::new(Fcao::<T, T>::new(extent, config, id)?),
+            SurveyorConfig::Fcao(config) => Box::new(Fcao::<T, T>::new(config, id, extent)?),
             SurveyorConfig::Coordinated(config) => {
-                Box::new(CoordinatedSurvey::new(extent, config, id)?)
+                Box::new(CoordinatedSurvey::new(config, id, extent)?)
             }
         })
     }
@@ -187,7 +187,7 @@ impl<const T: usize> Simulation<T> {
             .copied()
             .enumerate()
             .map(|(id, at)| {
-                let pilot = pilot(host, extent, scenario, id as u8)?;
+                let pilot = pilot(host, extent, scenario, RobotId(id as u8))?;
                 Ok(Robot {
                     pilot,
                     at,
@@ -292,7 +292,7 @@ impl<const T: usize> Simulation<T> {
 
     /// Everybody's position and news to everybody, however much it is.
     fn share_maps(&mut self) {
-        let messages: Vec<Option<(Status, Vec<Patch>)>> = self
+        let messages: Vec<Option<(Status<Point, Cell>, Vec<Patch>)>> = self
             .robots
             .iter()
             .map(|robot| {
@@ -309,7 +309,7 @@ impl<const T: usize> Simulation<T> {
             for to in (0..self.robots.len()).filter(|&to| to != from) {
                 if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
                     let pilot = self.robots[to].pilot.get_mut();
-                    pilot.hear(from as u8, *status);
+                    pilot.hear(RobotId(from as u8), *status);
                     for patch in patches {
                         pilot.merge(patch);
                     }
@@ -346,11 +346,11 @@ impl<const T: usize> Simulation<T> {
             .push(began.elapsed().as_nanos() as u64);
         let from = self.robots[i].at;
         let mut deed = match action {
-            Action::Fly(_) => Deed::Flew,
-            Action::Hover => Deed::Hovered,
+            Action::Move(_) => Deed::Flew,
+            Action::Wait => Deed::Hovered,
             Action::Stop(reason) => Deed::Stopped(reason.into()),
         };
-        if let Action::Fly(to) = action {
+        if let Action::Move(to) = action {
             if self.collides(i, to) {
                 deed = Deed::Refused;
             } else {
@@ -368,7 +368,7 @@ impl<const T: usize> Simulation<T> {
         }
         self.trace.stops[i] = match action {
             Action::Stop(reason) => Some(reason),
-            Action::Fly(_) | Action::Hover => None,
+            Action::Move(_) | Action::Wait => None,
         };
         self.robots[i].stopped = self.trace.stops[i].is_some();
         let status = self.robots[i].pilot.get().status();
@@ -377,7 +377,10 @@ impl<const T: usize> Simulation<T> {
             MediumKind::Ideal => {
                 for to in (0..self.robots.len()).filter(|&to| to != i) {
                     if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
-                        self.robots[to].pilot.get_mut().hear(i as u8, status);
+                        self.robots[to]
+                            .pilot
+                            .get_mut()
+                            .hear(RobotId(i as u8), status);
                     }
                 }
             }
@@ -389,7 +392,7 @@ impl<const T: usize> Simulation<T> {
             robot: i as u8,
             at: robot.at,
             deed,
-            goal: status.target,
+            goal: status.goal,
             gain: knowledge.gain(),
             known: knowledge.surface().known_columns(),
             work: robot.pilot.get().work(),
@@ -453,7 +456,7 @@ fn pilot<const T: usize>(
     host: &impl Host,
     extent: Extent,
     scenario: &Scenario,
-    id: u8,
+    id: RobotId,
 ) -> Result<Pilot<T>, SetupError> {
     let limits = scenario.limits;
     let link = LinkConfig {
@@ -461,7 +464,7 @@ fn pilot<const T: usize>(
         ..LinkConfig::new()
     };
     let follower = |guide| -> Result<Pilot<T>, SetupError> {
-        let follower = Follower::new(extent, limits, link, RobotId(id), guide)?;
+        let follower = Follower::new(extent, limits, link, id, guide)?;
         Ok(Pilot::Follower(Box::new(follower)))
     };
     Ok(match scenario.planner {

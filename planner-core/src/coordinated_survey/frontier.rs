@@ -93,8 +93,8 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             if peer.status.position.plan_distance(at) < distance {
                 rank += 1.0;
             }
-            if let Some(target) = peer.status.target {
-                let away = Point::over(target, 0.0).plan_distance(at) / (SPREAD * range);
+            if let Some(goal) = peer.status.goal {
+                let away = Point::over(goal, 0.0).plan_distance(at) / (SPREAD * range);
                 announced += math::exp(-0.5 * away * away);
             }
         }

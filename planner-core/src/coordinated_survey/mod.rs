@@ -12,7 +12,7 @@
 //! Pockets, swaths and frontiers are heuristics, and what others say of themselves bends
 //! them: a robot that hears of rivals everywhere leaves everything to them. But all
 //! three serve only as long as something is gained: after [`PATIENCE`] steps in a row
-//! without it, or six near a target, the rescue decides, which heeds nobody's claims.
+//! without it, or six near a goal, the rescue decides, which heeds nobody's claims.
 //! The six are forgotten with the next gain too. So the proof in `survey/rescue.rs`
 //! holds here, with its case 1.
 
@@ -26,8 +26,8 @@ use crate::fcao::History;
 use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
-use crate::robot::RobotId;
-use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use crate::robot::{Action, RobotId};
+use crate::survey::{Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
 use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
@@ -51,7 +51,7 @@ pub enum Choice {
     Cubic,
 }
 
-/// Steps without gain near a target after which the robot looks over its edges.
+/// Steps without gain near a goal after which the robot looks over its edges.
 const NEAR_PATIENCE: u8 = 6;
 
 /// What a fleet agrees on.
@@ -80,7 +80,7 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     /// them in turn stands.
     shortlist: Vec<TileIndex, SHORTLIST>,
     turn: TileIndex,
-    /// Steps near a target since the last gain.
+    /// Steps near a goal since the last gain.
     stuck: u8,
     /// Whether the last step was a local one.
     local: bool,
@@ -109,18 +109,18 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     }
 
     /// Robot `id` of a fleet over a surface of `extent` columns.
-    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+    pub fn new(config: Config, id: RobotId, extent: Extent) -> Result<Self, SetupError> {
         let mut robot = Self::vacant();
-        robot.reset(extent, config, id)?;
+        robot.reset(config, id, extent)?;
         Ok(robot)
     }
 
     /// Starts anew, in place; unchanged after an error.
-    pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
+    pub fn reset(&mut self, config: Config, id: RobotId, extent: Extent) -> Result<(), SetupError> {
         self.knowledge
-            .reset(extent, config.limits, config.link, RobotId(id))?;
+            .reset(extent, config.limits, config.link, id)?;
         self.config = config;
-        self.rng = Rng::new(config.seed, u64::from(id));
+        self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
         self.rescue.reset();
         self.shortlist.clear();
@@ -140,12 +140,12 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         min_altitude.max(CRUISE * range)
     }
 
-    /// Whether the robot has been near its target for a while and gained nothing: it
+    /// Whether the robot has been near its goal for a while and gained nothing: it
     /// hides, behind an edge or on a tower.
     fn is_stuck(&mut self, gain: f32) -> bool {
         let here = self.knowledge.position();
-        let near = self.knowledge.target().is_none_or(|target| {
-            here.plan_distance(Point::over(target, 0.0)) < 0.5 * self.config.limits.range
+        let near = self.knowledge.goal().is_none_or(|goal| {
+            here.plan_distance(Point::over(goal, 0.0)) < 0.5 * self.config.limits.range
         });
         if gain > 0.0 {
             self.stuck = 0;
@@ -155,28 +155,28 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.stuck >= NEAR_PATIENCE
     }
 
-    fn fly_to(&mut self, target: Option<Cell>) -> Option<Action> {
-        self.knowledge.set_target(target);
+    fn fly_to(&mut self, goal: Option<Cell>) -> Option<Action<Point>> {
+        self.knowledge.set_goal(goal);
         self.knowledge.look_at(29);
-        let goal = Point::over(target?, 0.0);
+        let goal = Point::over(goal?, 0.0);
         self.knowledge
             .step_towards(goal, self.cruise())
-            .map(Action::Fly)
+            .map(Action::Move)
     }
 
     /// Any allowed flight of one step: the way out of a place where flights are
     /// refused.
-    fn sidestep(&mut self) -> Action {
+    fn sidestep(&mut self) -> Action<Point> {
         for _ in 0..16 {
             let heading = self.rng.angle();
             let to = self
                 .knowledge
                 .step_along(heading, self.config.limits.step, self.cruise());
             if self.knowledge.may_fly(to) {
-                return Action::Fly(to);
+                return Action::Move(to);
             }
         }
-        Action::Hover
+        Action::Wait
     }
 }
 
@@ -189,7 +189,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action {
+    fn tick(&mut self) -> Action<Point> {
         let action = match self.knowledge.begin_tick() {
             Some(action) => action,
             None => self.decide(),
@@ -199,7 +199,7 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
 }
 
 impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
-    fn decide(&mut self) -> Action {
+    fn decide(&mut self) -> Action<Point> {
         let gain = self.knowledge.gain();
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
@@ -217,10 +217,10 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             return action;
         }
         if let Some(to) = self.best_swath(gain) {
-            self.knowledge.set_target(None);
-            return Action::Fly(to);
+            self.knowledge.set_goal(None);
+            return Action::Move(to);
         }
         let frontier = self.own_frontier();
-        self.fly_to(frontier).unwrap_or(Action::Hover)
+        self.fly_to(frontier).unwrap_or(Action::Wait)
     }
 }

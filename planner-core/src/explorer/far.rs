@@ -9,12 +9,12 @@ use heapless::Vec;
 
 use super::others::Others;
 use super::patch::connected;
-use super::path::Path;
 use super::surroundings::Surroundings;
 use super::wave::{LABELS, Wave};
 use super::window::Candidate;
 use crate::cell::Cell;
 use crate::robot::RobotId;
+use crate::role::Path;
 use crate::tile::TileIndex;
 
 /// How often all frontiers are given away anew if there are more robots than

@@ -82,7 +82,7 @@
 //! step in this very round, and no time reopens it: whatever can be reached past them was
 //! reached, however many there are.
 //!
-//! Where robots may not share a cell, roles walk and bodies stay ([`exchange`]): the
+//! Where robots may not share a cell, roles walk and bodies stay ([`exchange`](role::exchange)): the
 //! lowest role that is active is never pushed back and never waits, so it stops; then the
 //! next one is the lowest. Where looks show nothing or cells refuse, bodies have set aside
 //! different cells, and a role may find its plan worthless in the next one. After four
@@ -92,24 +92,18 @@
 mod aside;
 mod far;
 mod lean;
-mod maybe;
 mod others;
 mod patch;
-mod path;
 mod purse;
-mod role;
 mod surroundings;
 mod wave;
 mod window;
 
 pub use others::MAX_OTHERS;
-pub use role::{Role, exchange};
 
 use aside::{Aside, Verdict};
 use far::{FarSearch, Outcome};
-use maybe::Maybe;
 use others::Others;
-use role::Plan;
 use surroundings::Surroundings;
 use window::{Aim, Candidate, NearSearch};
 
@@ -119,8 +113,10 @@ use crate::map::{Learnt, Map};
 use crate::planner::Planner;
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
+use crate::role::{self, Plan, Role};
 use crate::sight::Sighting;
 use crate::tile::{TileIndex, TileSet};
+use crate::zeroed::Maybe;
 
 /// How an explorer decides. One configuration serves a whole fleet; none of it
 /// depends on the map's size or the number of robots.
@@ -170,7 +166,7 @@ impl Config {
             patience: 8,
             looks: 2,
             holds: 64,
-            way: path::CAPACITY as u16,
+            way: role::CAPACITY as u16,
             link: LinkConfig::new(),
         }
     }
@@ -712,11 +708,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         Status {
             position: self.around.position,
             goal: self.role.plan.map(|plan| plan.goal),
-            activity: if self.role.has_stopped() {
-                Activity::Stopped
-            } else {
-                Activity::Exploring
-            },
+            activity: Activity::stopped_if(self.role.has_stopped()),
         }
     }
 

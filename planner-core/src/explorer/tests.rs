@@ -7,6 +7,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::role::exchange;
 use crate::sight::look;
 
 type Small = Explorer<3, 3>;

@@ -3,10 +3,10 @@
 
 use super::lean;
 use super::others::MAX_OTHERS;
-use super::path::Path;
 use super::surroundings::Surroundings;
 use crate::cell::{Cell, Direction};
 use crate::robot::RobotId;
+use crate::role::Path;
 use crate::tile::{TILE, TileIndex, bits};
 
 /// Side of the window in cells and in tiles.

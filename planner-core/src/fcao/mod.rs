@@ -17,8 +17,8 @@ use crate::cell::Extent;
 use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
-use crate::robot::RobotId;
-use crate::survey::{Action, Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use crate::robot::{Action, RobotId};
+use crate::survey::{Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -90,18 +90,18 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     }
 
     /// Robot `id` of a fleet over a surface of `extent` columns.
-    pub fn new(extent: Extent, config: Config, id: u8) -> Result<Self, SetupError> {
+    pub fn new(config: Config, id: RobotId, extent: Extent) -> Result<Self, SetupError> {
         let mut robot = Self::vacant();
-        robot.reset(extent, config, id)?;
+        robot.reset(config, id, extent)?;
         Ok(robot)
     }
 
     /// Starts anew, in place; unchanged after an error.
-    pub fn reset(&mut self, extent: Extent, config: Config, id: u8) -> Result<(), SetupError> {
+    pub fn reset(&mut self, config: Config, id: RobotId, extent: Extent) -> Result<(), SetupError> {
         self.knowledge
-            .reset(extent, config.limits, config.link, RobotId(id))?;
+            .reset(extent, config.limits, config.link, id)?;
         self.config = config;
-        self.rng = Rng::new(config.seed, u64::from(id));
+        self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
         self.rescue.reset();
         Ok(())
@@ -114,7 +114,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     /// CAO's step: the best of the random candidates by the local model, or `None`
     /// if staying is better [Renzaglia2019 function CAO].
-    fn optimise(&mut self) -> Option<Action> {
+    fn optimise(&mut self) -> Option<Action<Point>> {
         let here = self.knowledge.position();
         let model = (self.history.len() >= FEWEST)
             .then(|| self.fit(here))
@@ -136,7 +136,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         }
         match best {
             Some((value, _)) if value <= model.value(here) => None,
-            Some((_, to)) => Some(Action::Fly(to)),
+            Some((_, to)) => Some(Action::Move(to)),
             None => Some(self.climb()),
         }
     }
@@ -169,33 +169,33 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     }
 
     /// The first allowed candidate.
-    fn wander(&mut self) -> Action {
+    fn wander(&mut self) -> Action<Point> {
         let here = self.knowledge.position();
         for _ in 0..self.config.candidates {
             let to = self.candidate(here);
             if self.knowledge.may_fly(to) {
-                return Action::Fly(to);
+                return Action::Move(to);
             }
         }
         self.climb()
     }
 
-    fn climb(&self) -> Action {
+    fn climb(&self) -> Action<Point> {
         let up = self.knowledge.climb();
         if self.knowledge.may_fly(up) {
-            Action::Fly(up)
+            Action::Move(up)
         } else {
-            Action::Hover
+            Action::Wait
         }
     }
 
     /// Flies to the closest frontier [Renzaglia2019 §4.2]. Reading: low enough that
     /// it comes into range, and another one as soon as this one is none any more.
-    fn fly_to_frontier(&mut self) -> Action {
+    fn fly_to_frontier(&mut self) -> Action<Point> {
         let is_frontier = |cell| self.knowledge.surface().is_frontier(cell);
-        if !self.knowledge.target().is_some_and(is_frontier) {
-            let (target, work) = self.knowledge.closest_frontier();
-            self.knowledge.set_target(target);
+        if !self.knowledge.goal().is_some_and(is_frontier) {
+            let (goal, work) = self.knowledge.closest_frontier();
+            self.knowledge.set_goal(goal);
             self.knowledge.look_at(work);
         }
         let Limits {
@@ -205,13 +205,13 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         } = self.config.limits;
         self.knowledge.look_at(29);
         self.knowledge
-            .target()
-            .and_then(|target| {
-                let goal = Point::over(target, 0.0);
+            .goal()
+            .and_then(|goal| {
+                let goal = Point::over(goal, 0.0);
                 self.knowledge
                     .step_towards(goal, min_altitude.max(range / 2.0))
             })
-            .map_or(Action::Hover, Action::Fly)
+            .map_or(Action::Wait, Action::Move)
     }
 }
 
@@ -224,7 +224,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action {
+    fn tick(&mut self) -> Action<Point> {
         let action = match self.knowledge.begin_tick() {
             Some(action) => action,
             None => self.decide(),
@@ -235,7 +235,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
 
 impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     // [Renzaglia2019 Algorithm 1]
-    fn decide(&mut self) -> Action {
+    fn decide(&mut self) -> Action<Point> {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
         let needs_rescue = self.knowledge.idle() >= PATIENCE;
@@ -247,8 +247,8 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             return self.rescue.tick(&mut self.knowledge);
         }
         if self.knowledge.gain() > self.least_gain() {
-            // Without a target: the robot optimises locally.
-            self.knowledge.set_target(None);
+            // Without a goal: the robot optimises locally.
+            self.knowledge.set_goal(None);
             if let Some(action) = self.optimise() {
                 return action;
             }

@@ -18,7 +18,6 @@ pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
 pub use hearsay::Hearsay;
 pub use link::{GridId, Heard, Key, Link, LinkConfig};
 pub(crate) use sent::Sent;
-pub(crate) use surface_frame::position_on_wire;
 pub use surface_frame::{HeightRecord, SurfaceFrame};
 pub(crate) use voxel_frame::MAX_PATCHES;
 pub use voxel_frame::VoxelFrame;

@@ -8,9 +8,8 @@ use super::link::{GridId, Key};
 use crate::cell::{Cell, Extent};
 use crate::list;
 use crate::point::Point;
-use crate::robot::RobotId;
+use crate::robot::{Activity, RobotId, Status};
 use crate::surface::{Height, Patch};
-use crate::survey::Status;
 use crate::tile::MOST_TILES;
 use crate::tile::{TILE, TileIndex, bits};
 
@@ -59,7 +58,7 @@ pub struct HeightRecord {
 }
 
 /// One frame: who is where, going where, and some heights of its map.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SurfaceFrame {
     /// The grid that cells and tiles refer to.
     pub grid: GridId,
@@ -67,12 +66,9 @@ pub struct SurfaceFrame {
     pub sender: RobotId,
     /// Counts the sender's frames, and wraps around.
     pub sequence: u16,
-    /// Where it is: x, y and z in 1/128 of a cell.
-    pub position: [u16; 3],
-    /// The frontier that it is on its way to.
-    pub target: Option<Cell>,
-    /// Whether it has stopped.
-    pub stopped: bool,
+    /// What the sender says of itself. Its position travels rounded down to 1/128 of a
+    /// cell, so that it stays in its column; 0 and 511.99 beyond the ends.
+    pub status: Status<Point, Cell>,
     /// Heights of its map; together at most 34 bytes.
     pub records: Vec<HeightRecord, MAX_RECORDS>,
 }
@@ -127,27 +123,11 @@ impl HeightRecord {
     }
 }
 
-/// `position` as it travels: rounded down to 1/128 of a cell, so that it
-/// stays in its column; 0 and 511.99 beyond the ends.
-pub(crate) fn position_on_wire(position: Point) -> [u16; 3] {
-    [position.x, position.y, position.z].map(|v| (v * PER_CELL) as u16)
-}
-
 impl SurfaceFrame {
-    /// What the sender says of itself.
-    pub fn status(&self) -> Status {
-        let [x, y, z] = self.position.map(|v| f32::from(v) / PER_CELL);
-        Status {
-            position: Point::new(x, y, z),
-            target: self.target,
-            stopped: self.stopped,
-        }
-    }
-
     /// Writes the frame and returns its length, at most [`MAX_LEN`]. Bytes behind are
     /// not touched.
     ///
-    /// The target must lie on the grid, and the records fit into 34 bytes together:
+    /// The goal must lie on the grid, and the records fit into 34 bytes together:
     /// those that do not are left out.
     pub fn encode(&self, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
         let header = Header {
@@ -156,11 +136,12 @@ impl SurfaceFrame {
             sequence: self.sequence,
         };
         let mut writer = Writer::new(HEIGHTS, header, buffer);
-        writer.put(&[u8::from(self.stopped) | u8::from(self.target.is_some()) << 1]);
-        for coordinate in self.position {
-            writer.put(&coordinate.to_le_bytes());
+        let Status { position, goal, .. } = self.status;
+        writer.put(&[u8::from(self.status.has_stopped()) | u8::from(goal.is_some()) << 1]);
+        for coordinate in [position.x, position.y, position.z] {
+            writer.put(&((coordinate * PER_CELL) as u16).to_le_bytes());
         }
-        writer.put(&self.target.map_or([0; 3], packed));
+        writer.put(&goal.map_or([0; 3], packed));
         let mut room = ROOM;
         for record in &self.records {
             let Some(left) = room.checked_sub(record.length()) else {
@@ -203,12 +184,13 @@ impl SurfaceFrame {
         if state & !3 != 0 {
             return Err(FrameError::Field(Field::State));
         }
-        let position = [[x0, x1], [y0, y1], [z0, z1]].map(u16::from_le_bytes);
-        let [x, y, _] = position.map(|coordinate| (coordinate >> 7) as i16);
-        if !extent.contains(Cell::new(x, y)) {
+        let coordinates = [[x0, x1], [y0, y1], [z0, z1]].map(u16::from_le_bytes);
+        let [x, y, z] = coordinates.map(|coordinate| f32::from(coordinate) / PER_CELL);
+        let position = Point::new(x, y, z);
+        if !extent.contains(position.cell()) {
             return Err(FrameError::Field(Field::Position));
         }
-        let target = optional_cell([t0, t1, t2], state & 2 != 0, extent)?;
+        let goal = optional_cell([t0, t1, t2], state & 2 != 0, extent)?;
         let mut records = Vec::new();
         while !rest.is_empty() {
             let (record, behind) = decode_record(rest, extent)?;
@@ -220,9 +202,11 @@ impl SurfaceFrame {
             grid: header.grid,
             sender: header.sender,
             sequence: header.sequence,
-            position,
-            target,
-            stopped: state & 1 != 0,
+            status: Status {
+                position,
+                goal,
+                activity: Activity::stopped_if(state & 1 != 0),
+            },
             records,
         })
     }

@@ -8,11 +8,10 @@ use super::envelope::{
 use super::frame::{Field, FrameError, MAX_LEN};
 use super::link::{GridId, Key};
 use crate::cell::Extent;
-use crate::robot::RobotId;
+use crate::robot::{Activity, RobotId, Status};
 use crate::tile::MOST_TILES;
 use crate::tile::TileIndex;
 use crate::volume::{Voxel, VoxelPatch};
-use crate::voxel_survey::Status;
 
 /// The kind of frame that carries tiles of levels of voxels.
 const VOXELS: u8 = 3;
@@ -43,7 +42,7 @@ pub struct VoxelFrame {
     /// Counts the sender's frames, and wraps around.
     pub sequence: u16,
     /// What the sender says of itself.
-    pub status: Status,
+    pub status: Status<Voxel>,
     /// Pieces of its map, each with a known voxel at least; together at most 35 bytes.
     pub patches: Vec<VoxelPatch, MAX_PATCHES>,
 }
@@ -87,13 +86,9 @@ impl VoxelFrame {
             sender: self.sender,
             sequence: self.sequence,
         };
-        let Status {
-            position,
-            goal,
-            stopped,
-        } = self.status;
+        let Status { position, goal, .. } = self.status;
         let mut writer = Writer::new(VOXELS, header, buffer);
-        writer.put(&[u8::from(stopped) | u8::from(goal.is_some()) << 1]);
+        writer.put(&[u8::from(self.status.has_stopped()) | u8::from(goal.is_some()) << 1]);
         for voxel in [position, goal.unwrap_or(Voxel::new(0, 0, 0))] {
             writer.put(&packed(voxel.cell()));
             writer.put(&[voxel.z as u8]);
@@ -171,7 +166,7 @@ impl VoxelFrame {
             status: Status {
                 position: Voxel::new(position.x, position.y, height.into()),
                 goal: goal.map(|goal| Voxel::new(goal.x, goal.y, goal_height.into())),
-                stopped: state & 1 != 0,
+                activity: Activity::stopped_if(state & 1 != 0),
             },
             patches,
         })

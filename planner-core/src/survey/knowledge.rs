@@ -2,16 +2,17 @@
 
 use core::fmt;
 
+use super::Limits;
 use super::link::Link;
 use super::news::{MAX_RANGE, News, REPEATS};
 use super::peers::{Peer, Peers};
-use super::{Action, Limits, Motion, Status};
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::point::Point;
 use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN};
-use crate::robot::{RobotId, Stop, Wait};
+use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::surface::{Column, Height, Patch, Surface, distance_to_tile};
 use crate::tile::{TileIndex, bits};
+use crate::zeroed::Maybe;
 
 /// Unknown tiles that the turn passes over in a step.
 const TURN_STRIDE: u8 = 8;
@@ -66,7 +67,7 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     pub(super) surface: Surface<TW, TH>,
     pub(super) position: Point,
     news: News,
-    pub(super) peers: Peers,
+    pub(super) peers: Peers<Status<Point, Cell>>,
     /// The tile of the own map that is told next.
     turn: TileIndex,
     gain: f32,
@@ -83,38 +84,14 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     silent: u8,
     link: Link,
     /// Where the planner said that it goes.
-    pub(super) target: Option<Cell>,
+    pub(super) goal: Option<Cell>,
     pub(super) stopped: bool,
     /// Why, and the number of known columns then.
     reason: (Stop, u32),
     /// Whether what was given up is to be tried again.
     resumed: bool,
-    pause: Pause,
+    waiting: Maybe<Wait>,
     work: u32,
-}
-
-/// Why the robot hovers. As an `Option<Wait>`, but all zero is none: then a `static`
-/// planner takes no flash.
-#[repr(u8)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Pause {
-    None = 0,
-    Sight = 1,
-    Pose = 2,
-    Search = 3,
-    Closed = 4,
-}
-
-impl Pause {
-    pub(crate) const fn reason(self) -> Option<Wait> {
-        match self {
-            Self::None => None,
-            Self::Sight => Some(Wait::Sight),
-            Self::Pose => Some(Wait::Pose),
-            Self::Search => Some(Wait::Search),
-            Self::Closed => Some(Wait::Closed),
-        }
-    }
 }
 
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
@@ -136,11 +113,11 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             looked: false,
             silent: 0,
             link: Link::vacant(),
-            target: None,
+            goal: None,
             stopped: false,
             reason: (Stop::Complete, 0),
             resumed: false,
-            pause: Pause::None,
+            waiting: Maybe::Nothing,
             work: 0,
         }
     }
@@ -192,10 +169,10 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.looked = false;
         self.silent = 0;
         self.link = Link::new(link, id, extent);
-        self.target = None;
+        self.goal = None;
         self.stopped = false;
         self.resumed = false;
-        self.pause = Pause::None;
+        self.waiting = Maybe::Nothing;
         self.work = 0;
         Ok(())
     }
@@ -231,13 +208,13 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// Where the robot said last that it goes.
-    pub const fn target(&self) -> Option<Cell> {
-        self.target
+    pub const fn goal(&self) -> Option<Cell> {
+        self.goal
     }
 
     /// Announces where the robot goes.
-    pub fn set_target(&mut self, target: Option<Cell>) {
-        self.target = target;
+    pub fn set_goal(&mut self, goal: Option<Cell>) {
+        self.goal = goal;
     }
 
     /// Cells, tiles, words, candidates and samples looked at since the tick began.
@@ -251,11 +228,11 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// What the robot tells the others about itself.
-    pub const fn status(&self) -> Status {
+    pub const fn status(&self) -> Status<Point, Cell> {
         Status {
             position: self.position,
-            target: self.target,
-            stopped: self.stopped,
+            goal: self.goal,
+            activity: Activity::stopped_if(self.stopped),
         }
     }
 
@@ -266,13 +243,13 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// The other robots as last heard.
-    pub fn peers(&self) -> impl Iterator<Item = &Peer> {
+    pub fn peers(&self) -> impl Iterator<Item = &Peer<Status<Point, Cell>>> {
         self.peers.iter()
     }
 
     /// The heard robots that still explore.
-    pub(crate) fn rivals(&self) -> impl Iterator<Item = &Peer> {
-        self.peers().filter(|peer| !peer.status.stopped)
+    pub(crate) fn rivals(&self) -> impl Iterator<Item = &Peer<Status<Point, Cell>>> {
+        self.peers().filter(|peer| !peer.status.has_stopped())
     }
 
     /// What the robot tells the others of its map in this step: the columns that it
@@ -347,7 +324,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             self.merge(&record.patch());
         }
         self.peers
-            .hear_frame(frame.sender.0, frame.status(), frame.sequence);
+            .hear_frame(frame.sender, frame.status, frame.sequence);
         Ok(self.surface.known_columns() - before)
     }
 
@@ -395,7 +372,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.surface.known_columns() == 0 || self.surface.height(cell).is_some_and(is_near)
     }
 
-    pub(super) fn hear(&mut self, id: u8, status: Status) {
+    pub(super) fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
         let Point { x, y, z } = status.position;
         if [x, y, z].iter().all(|at| at.abs() < FARTHEST) {
             self.peers.hear(id, status);
@@ -413,7 +390,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
 
     pub(super) fn report(&mut self, motion: Motion, at: Point) {
         self.lost = !self.is_pose(at);
-        self.blocked = motion == Motion::Blocked && !self.lost;
+        self.blocked = motion != Motion::Moved && !self.lost;
         if !self.lost {
             self.position = at;
         }
@@ -430,8 +407,8 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// The tail of every tick: remembers the flight that is ordered.
-    pub fn end_tick(&mut self, action: Action) -> Action {
-        if let Action::Fly(to) = action {
+    pub fn end_tick(&mut self, action: Action<Point>) -> Action<Point> {
+        if let Action::Move(to) = action {
             self.flight = (self.position, to);
         }
         action
@@ -443,9 +420,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     ///
     /// Cost: the columns seen first in this step; and a
     /// [`closest_frontier`](Self::closest_frontier) for a sensor that failed.
-    pub fn begin_tick(&mut self) -> Option<Action> {
+    pub fn begin_tick(&mut self) -> Option<Action<Point>> {
         self.work = 0;
-        self.pause = Pause::None;
+        self.waiting = Maybe::Nothing;
         // Without another look nothing was gained.
         let has_looked = core::mem::take(&mut self.looked);
         self.gain = if has_looked { self.news.reward() } else { 0.0 };
@@ -454,7 +431,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.turn = self.next_turn();
         self.link.tick();
         if self.lost {
-            return Some(self.hover(Pause::Pose));
+            return Some(self.wait(Wait::Pose));
         }
         self.idle = if self.gain > 0.0 {
             0
@@ -476,27 +453,27 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
                 frontiers: self.surface.frontiers(),
                 at: self.unseen_place(),
             })),
-            _ => Some(self.hover(Pause::Sight)),
+            _ => Some(self.wait(Wait::Sight)),
         }
     }
 
     /// Stops the robot for `reason`, until it knows more.
-    pub fn stop(&mut self, reason: Stop) -> Action {
-        self.target = None;
+    pub fn stop(&mut self, reason: Stop) -> Action<Point> {
+        self.goal = None;
         self.stopped = true;
         self.reason = (reason, self.surface.known_columns());
         Action::Stop(reason)
     }
 
     /// Stays for this step, and says why.
-    pub(crate) fn hover(&mut self, pause: Pause) -> Action {
-        self.pause = pause;
-        Action::Hover
+    pub fn wait(&mut self, reason: Wait) -> Action<Point> {
+        self.waiting = Maybe::Just(reason);
+        Action::Wait
     }
 
     /// Why the robot hovers, where it is known.
     pub(super) const fn waiting(&self) -> Option<Wait> {
-        self.pause.reason()
+        self.waiting.get()
     }
 
     pub(super) fn resume(&mut self) {

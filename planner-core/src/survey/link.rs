@@ -1,13 +1,11 @@
 //! One robot's end of the radio over a surface, and the turn of its map.
 
-use crate::cell::Extent;
-use crate::radio::{
-    FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, SurfaceFrame, position_on_wire,
-};
-use crate::robot::RobotId;
+use crate::cell::{Cell, Extent};
+use crate::point::Point;
+use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, SurfaceFrame};
+use crate::robot::{RobotId, Status};
 use crate::tile::TileIndex;
 
-use super::Status;
 use super::sender::Sender;
 
 /// Every so many frames one begins with the turn, whatever else waits.
@@ -50,7 +48,7 @@ impl Link {
     }
 
     /// A frame without records, if the budget allows one.
-    pub(super) fn begin_frame(&mut self, status: Status) -> Option<SurfaceFrame> {
+    pub(super) fn begin_frame(&mut self, status: Status<Point, Cell>) -> Option<SurfaceFrame> {
         if !self.sender.may_send() {
             return None;
         }
@@ -59,9 +57,7 @@ impl Link {
             grid: self.sender.grid,
             sender: self.sender.id,
             sequence: self.sender.sequence,
-            position: position_on_wire(status.position),
-            target: status.target,
-            stopped: status.stopped,
+            status,
             records: heapless::Vec::new(),
         })
     }
@@ -119,13 +115,13 @@ impl Link {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::point::Point;
+    use crate::robot::Activity;
 
     const EXTENT: Extent = Extent::new(20, 20);
-    const STATUS: Status = Status {
+    const STATUS: Status<Point, Cell> = Status {
         position: Point::new(3.0, 4.0, 5.0),
-        target: None,
-        stopped: false,
+        goal: None,
+        activity: Activity::Exploring,
     };
 
     #[test]

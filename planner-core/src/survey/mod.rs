@@ -22,7 +22,6 @@ pub use news::MAX_RANGE;
 pub use peers::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use rescue::PATIENCE;
 
-pub(crate) use knowledge::Pause;
 pub(crate) use peers::Peers;
 pub(crate) use rescue::Rescue;
 pub(crate) use sender::Sender;
@@ -30,7 +29,7 @@ pub(crate) use sender::Sender;
 use crate::cell::Cell;
 use crate::point::Point;
 use crate::radio::{FrameError, MAX_LEN};
-use crate::robot::{Stop, Wait};
+use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::surface::{Column, Patch};
 
 /// The physics of a fleet: what its sensors reach and which poses are allowed, the
@@ -61,43 +60,6 @@ impl Limits {
     };
 }
 
-/// What the robot shall do now.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Action {
-    /// Fly straight to this point, at most one step away.
-    Fly(Point),
-    /// Stay for this step. [`Surveyor::waiting`] may say why.
-    Hover,
-    /// Done, for this reason: [`Stop::Complete`] if every column of the map is known;
-    /// else the robot gave up, [`Stop::Unseen`], [`Stop::Blocked`] or [`Stop::Held`],
-    /// and the reason names a column. Every later tick returns the same, until the
-    /// robot hears of more, or [`Surveyor::resume`].
-    Stop(Stop),
-}
-
-/// How the last [`Action::Fly`] went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Motion {
-    /// The robot is where it was sent.
-    Moved,
-    /// Something was in the way; the robot is where it was.
-    Blocked,
-}
-
-/// What a robot says about itself: hints, never needed for completeness.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Status {
-    /// Where it is.
-    pub position: Point,
-    /// The frontier that it is on its way to.
-    pub target: Option<Cell>,
-    /// Whether it has stopped.
-    pub stopped: bool,
-}
-
 /// A planner of one robot over a surface of `TW`×`TH` tiles.
 pub trait Surveyor<const TW: usize, const TH: usize> {
     /// What the robot knows.
@@ -107,10 +69,14 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH>;
 
     /// Decides. Call it once per step.
-    fn tick(&mut self) -> Action;
+    ///
+    /// The stop is [`Stop::Complete`](crate::Stop::Complete) if every column of the map is
+    /// known; else the robot gave up, and the reason names a column. Every later tick
+    /// returns the same, until the robot hears of more, or [`resume`](Self::resume).
+    fn tick(&mut self) -> Action<Point>;
 
     /// What the robot tells the others about itself.
-    fn status(&self) -> Status {
+    fn status(&self) -> Status<Point, Cell> {
         self.knowledge().status()
     }
 
@@ -120,7 +86,7 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         self.knowledge().work()
     }
 
-    /// Why the last [`tick`](Self::tick) was [`Action::Hover`], where the planner tells.
+    /// Why the last [`tick`](Self::tick) was [`Action::Wait`], where the planner tells.
     fn waiting(&self) -> Option<Wait> {
         self.knowledge().waiting()
     }
@@ -139,14 +105,14 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     ///
     /// What a survey rests on: a look from above a column, no farther from it than the
     /// sensor's range, shows that column. A sensor that shows nothing from there a
-    /// hundred times in a row is taken to have failed: [`Stop::Unseen`], until it shows
+    /// hundred times in a row is taken to have failed: [`Stop::Unseen`](crate::Stop::Unseen), until it shows
     /// something.
     fn observe(&mut self, at: Point, columns: &[Column]) {
         self.knowledge_mut().observe(at, columns);
     }
 
     /// Takes in what robot `id` told about itself.
-    fn hear(&mut self, id: u8, status: Status) {
+    fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
         self.knowledge_mut().hear(id, status);
     }
 
@@ -155,7 +121,7 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         self.knowledge_mut().merge(patch);
     }
 
-    /// Says how the last [`Action::Fly`] went, and where the robot is now.
+    /// Says how the last [`Action::Move`] went, and where the robot is now.
     fn report(&mut self, motion: Motion, at: Point) {
         self.knowledge_mut().report(motion, at);
     }

@@ -1,6 +1,7 @@
 //! What was last heard of the other robots.
 
-use super::Status;
+use crate::robot::RobotId;
+use crate::zeroed::Maybe;
 
 /// Number of other robots that are remembered; of more, the latest heard.
 pub const MAX_PEERS: usize = 15;
@@ -10,9 +11,9 @@ pub const PEER_MEMORY: u8 = 15;
 
 /// Another robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peer<S = Status> {
+pub struct Peer<S> {
     /// Its name.
-    pub id: u8,
+    pub id: RobotId,
     /// What it said.
     pub status: S,
     /// Steps since.
@@ -23,31 +24,22 @@ pub struct Peer<S = Status> {
 
 /// At most [`MAX_PEERS`] robots, each once.
 #[derive(Clone, Debug)]
-pub(crate) struct Peers<S = Status>([Place<S>; MAX_PEERS]);
-
-/// Room for one. As an `Option`, but empty is all zero: then a `static` planner
-/// takes no flash.
-#[repr(u8)]
-#[derive(Clone, Copy, Debug)]
-enum Place<S> {
-    Empty = 0,
-    Taken(Peer<S>) = 1,
-}
+pub(crate) struct Peers<S>([Maybe<Peer<S>>; MAX_PEERS]);
 
 impl<S: Copy> Peers<S> {
     pub(crate) const fn new() -> Self {
-        Self([Place::Empty; MAX_PEERS])
+        Self([Maybe::Nothing; MAX_PEERS])
     }
 
     pub(crate) fn iter(&self) -> impl Iterator<Item = &Peer<S>> {
         self.0.iter().filter_map(|place| match place {
-            Place::Empty => None,
-            Place::Taken(peer) => Some(peer),
+            Maybe::Nothing => None,
+            Maybe::Just(peer) => Some(peer),
         })
     }
 
     /// The same by frame number `sequence`; older frames than the last are ignored.
-    pub(crate) fn hear_frame(&mut self, id: u8, status: S, sequence: u16) {
+    pub(crate) fn hear_frame(&mut self, id: RobotId, status: S, sequence: u16) {
         let heard = self.iter().find(|peer| peer.id == id);
         let is_news = |peer: &Peer<S>| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
         if heard.is_none_or(is_news) {
@@ -56,18 +48,18 @@ impl<S: Copy> Peers<S> {
     }
 
     /// Replaces what `id` said before, or else takes an empty or the oldest place.
-    pub(crate) fn hear(&mut self, id: u8, status: S) {
+    pub(crate) fn hear(&mut self, id: RobotId, status: S) {
         self.put(id, status, 0);
     }
 
-    fn put(&mut self, id: u8, status: S, sequence: u16) {
-        let staleness = |place: &Place<S>| match place {
-            Place::Taken(peer) if peer.id == id => u16::MAX,
-            Place::Taken(peer) => u16::from(peer.age),
-            Place::Empty => u16::MAX - 1,
+    fn put(&mut self, id: RobotId, status: S, sequence: u16) {
+        let staleness = |place: &Maybe<Peer<S>>| match place {
+            Maybe::Just(peer) if peer.id == id => u16::MAX,
+            Maybe::Just(peer) => u16::from(peer.age),
+            Maybe::Nothing => u16::MAX - 1,
         };
         if let Some(place) = self.0.iter_mut().max_by_key(|place| staleness(place)) {
-            *place = Place::Taken(Peer {
+            *place = Maybe::Just(Peer {
                 id,
                 status,
                 age: 0,
@@ -79,10 +71,10 @@ impl<S: Copy> Peers<S> {
     /// One step passes.
     pub(crate) fn age(&mut self) {
         for place in &mut self.0 {
-            if let Place::Taken(peer) = place {
+            if let Maybe::Just(peer) = place {
                 peer.age += 1;
                 if peer.age > PEER_MEMORY {
-                    *place = Place::Empty;
+                    *place = Maybe::Nothing;
                 }
             }
         }
@@ -93,12 +85,13 @@ impl<S: Copy> Peers<S> {
 mod tests {
     use super::*;
     use crate::point::Point;
+    use crate::robot::{Activity, Status};
 
-    fn at(x: f32) -> Status {
+    fn at(x: f32) -> Status<Point> {
         Status {
             position: Point::new(x, 0.0, 0.0),
-            target: None,
-            stopped: false,
+            goal: None,
+            activity: Activity::Exploring,
         }
     }
 
@@ -106,15 +99,15 @@ mod tests {
     fn remembers_each_robot_once_and_the_latest_of_many() {
         let mut peers = Peers::new();
         for id in 0..20 {
-            peers.hear(id, at(0.0));
-            peers.hear(id, at(1.0));
+            peers.hear(RobotId(id), at(0.0));
+            peers.hear(RobotId(id), at(1.0));
             if id == 9 {
                 peers.age();
             }
         }
         assert_eq!(peers.iter().count(), MAX_PEERS);
         assert!(peers.iter().all(|peer| peer.status == at(1.0)));
-        assert!((10..20).all(|id| peers.iter().any(|peer| peer.id == id)));
+        assert!((10..20).all(|id| peers.iter().any(|peer| peer.id == RobotId(id))));
         for _ in 0..PEER_MEMORY {
             peers.age();
         }

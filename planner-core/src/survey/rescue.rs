@@ -30,8 +30,8 @@
 //! 2. *A sensor that shows nothing where it must*: the robot hovers, and stops after a
 //!    hundred such looks in a row. Any other look that shows something known brings it
 //!    back to case 3; looks that may show nothing are steps of case 3.
-//! 3. *The rescue.* A round is a search, a target, its edges, the next target. Each
-//!    search looks at every tile once, so it ends; a target that was looked over or
+//! 3. *The rescue.* A round is a search, a goal, its edges, the next goal. Each
+//!    search looks at every tile once, so it ends; a goal that was looked over or
 //!    given up is not chosen again in the round. So there are at most F targets of 4
 //!    edges. One edge takes the wave of its way, which ends as it wets each column
 //!    once; flights, each of which lowers `patience`; and climbs, each of which lowers
@@ -40,18 +40,17 @@
 //!    whatever moves the robot. A refusal closes a column, at most N in a round, or
 //!    ends the flight to the edge or the climb. Waiting for robots in the way, in all
 //!    rounds but the first, lowers `waits`, which is set once a round. There are at most [`ROUNDS`] rests.
-//! 4. *No target is left*, and nothing was given up for what was in the way, or all
+//! 4. *No goal is left*, and nothing was given up for what was in the way, or all
 //!    rounds are over: it stops, and as long as the spell lasts every tick is that stop.
 //!
 //! Steps without a good pose are outside of all counts: nothing is decided in them.
 
 mod way;
 
-use super::knowledge::Pause;
-use super::{Action, Knowledge};
+use super::Knowledge;
 use crate::cell::{Cell, Direction};
 use crate::point::Point;
-use crate::robot::Stop;
+use crate::robot::{Action, Stop, Wait};
 use crate::surface::Columns;
 use crate::tile::{TileIndex, Tiles, bits};
 use way::Way;
@@ -105,14 +104,14 @@ pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     leg: Cell,
     legs: u32,
     known_columns: u32,
-    target: Option<Cell>,
-    /// The search for the next target: the tile that comes next, how many are left,
+    goal: Option<Cell>,
+    /// The search for the next goal: the tile that comes next, how many are left,
     /// and the nearest frontier found so far.
     cursor: TileIndex,
     left: usize,
     nearest: Option<(f32, Cell)>,
     way: Way<TW, TH>,
-    /// Which of the target's four edges is looked over.
+    /// Which of the goal's four edges is looked over.
     edge: u8,
     /// Whether the robot is there and climbs.
     climbing: bool,
@@ -139,7 +138,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             leg: Cell::new(0, 0),
             legs: 0,
             known_columns: 0,
-            target: None,
+            goal: None,
             cursor: TileIndex { x: 0, y: 0 },
             left: 0,
             nearest: None,
@@ -157,7 +156,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.leg = Cell::new(0, 0);
         self.legs = 0;
         self.known_columns = 0;
-        self.target = None;
+        self.goal = None;
         self.cursor = TileIndex { x: 0, y: 0 };
         self.way.begin(None);
         self.edge = 0;
@@ -197,10 +196,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
 
     /// One step of the rescue.
     ///
-    /// Cost: 64 tiles while a target is searched for, 1024 while the way to it is; every
+    /// Cost: 64 tiles while a goal is searched for, 1024 while the way to it is; every
     /// tile where a way turns out to be barred, or a round begins; and at most 32
     /// flights looked at.
-    pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
+    pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action<Point> {
         let refused = knowledge.take_refused();
         let known_columns = knowledge.surface().known_columns();
         let is_resumed = knowledge.take_resumed();
@@ -209,44 +208,44 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             self.begin_spell();
             if self.careful {
                 // Ways led round what was closed.
-                self.target = None;
+                self.goal = None;
                 self.careful = false;
             }
         }
         if self.rest > 0 {
             self.rest = self.rest.saturating_sub(1);
-            return knowledge.hover(Pause::Closed);
+            return knowledge.wait(Wait::Closed);
         }
-        let is_frontier = |target| knowledge.surface().is_frontier(target);
-        if !self.target.is_some_and(is_frontier) {
-            self.target = None;
+        let is_frontier = |goal| knowledge.surface().is_frontier(goal);
+        if !self.goal.is_some_and(is_frontier) {
+            self.goal = None;
             self.search(knowledge);
             if self.left > 0 {
-                return knowledge.hover(Pause::Search);
+                return knowledge.wait(Wait::Search);
             }
-            self.target = self.nearest.map(|(_, cell)| cell);
+            self.goal = self.nearest.map(|(_, cell)| cell);
             self.begin_search();
             self.begin(knowledge, 0);
-            self.way.begin(self.target);
+            self.way.begin(self.goal);
         } else if let Some((from, to)) = refused {
             self.take_refusal(knowledge, from, to);
         }
-        knowledge.set_target(self.target);
-        let Some(target) = self.target else {
+        knowledge.set_goal(self.goal);
+        let Some(goal) = self.goal else {
             return self.end_round(knowledge);
         };
-        if self.closed.contains(target) {
-            self.give_up(target);
-            return knowledge.hover(Pause::Search);
+        if self.closed.contains(goal) {
+            self.give_up(goal);
+            return knowledge.wait(Wait::Search);
         }
-        let Some((edge, place)) = edge_of(knowledge, target, self.edge) else {
-            self.tried.insert(target);
-            self.target = None;
-            return knowledge.hover(Pause::Search);
+        let Some((edge, place)) = edge_of(knowledge, goal, self.edge) else {
+            self.tried.insert(goal);
+            self.goal = None;
+            return knowledge.wait(Wait::Search);
         };
         self.edge = edge;
         if !self.climbing
-            && let Some(action) = self.approach(knowledge, target, place)
+            && let Some(action) = self.approach(knowledge, goal, place)
         {
             return action;
         }
@@ -254,29 +253,29 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if up.z > knowledge.position().z && self.patience > 0 && knowledge.is_open(up) {
             let Some(robot) = knowledge.robot_in_the_way(up) else {
                 self.patience = self.patience.saturating_sub(1);
-                return Action::Fly(up);
+                return Action::Move(up);
             };
             if self.waits_for(robot) {
-                return knowledge.hover(Pause::Closed);
+                return knowledge.wait(Wait::Closed);
             }
-            self.bar(target);
+            self.bar(goal);
         }
         self.begin(knowledge, edge.saturating_add(1));
-        knowledge.hover(Pause::Search)
+        knowledge.wait(Wait::Search)
     }
 
-    /// A step to the edge at `place` of the target's column; `None` once the robot is
+    /// A step to the edge at `place` of the goal's column; `None` once the robot is
     /// there, or has been on its way for too long.
     fn approach(
         &mut self,
         knowledge: &mut Knowledge<TW, TH>,
-        target: Cell,
+        goal: Cell,
         place: Point,
-    ) -> Option<Action> {
+    ) -> Option<Action<Point>> {
         let here = knowledge.position().cell();
         knowledge.look_at(29);
         let is_straight = if self.careful {
-            here == target
+            here == goal
         } else {
             is_known_between(knowledge, place)
         };
@@ -285,10 +284,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         } else {
             match self.way.next(knowledge, &self.closed) {
                 way::Next::Column(cell) => Point::over(cell, 0.0),
-                way::Next::Searching => return Some(knowledge.hover(Pause::Search)),
+                way::Next::Searching => return Some(knowledge.wait(Wait::Search)),
                 way::Next::None if self.way.is_cut() => {
                     self.give_up_all();
-                    return Some(knowledge.hover(Pause::Search));
+                    return Some(knowledge.wait(Wait::Search));
                 }
                 way::Next::None => place,
             }
@@ -305,7 +304,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         let step = if self.careful {
             self.careful_step(knowledge, next, cruise)
         } else {
-            knowledge.step_towards(next, cruise).map(Action::Fly)
+            knowledge.step_towards(next, cruise).map(Action::Move)
         };
         if step.is_some() && self.patience > 0 {
             return step;
@@ -314,12 +313,12 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if self.is_hindered {
             if self.waits_for(self.hindrance) {
                 self.patience = self.patience.max(TIME);
-                return Some(knowledge.hover(Pause::Closed));
+                return Some(knowledge.wait(Wait::Closed));
             }
-            self.bar(target);
+            self.bar(goal);
             if self.round > 0 {
-                self.give_up(target);
-                return Some(knowledge.hover(Pause::Closed));
+                self.give_up(goal);
+                return Some(knowledge.wait(Wait::Closed));
             }
         }
         self.begin_climb(knowledge);
@@ -333,7 +332,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         knowledge: &mut Knowledge<TW, TH>,
         next: Point,
         cruise: f32,
-    ) -> Option<Action> {
+    ) -> Option<Action<Point>> {
         let here = knowledge.position();
         let to = knowledge.step_to(next, cruise);
         let up = knowledge.climb();
@@ -342,10 +341,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             return None;
         }
         if knowledge.may_fly(to) {
-            return Some(Action::Fly(to));
+            return Some(Action::Move(to));
         }
         if !knowledge.is_open(to) && up.z > here.z && knowledge.may_fly(up) {
-            return Some(Action::Fly(up));
+            return Some(Action::Move(up));
         }
         if next.cell() == here.cell() {
             return None;
@@ -353,10 +352,10 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if let Some(robot) = knowledge.robot_in_the_way(to)
             && self.waits_for(robot)
         {
-            return Some(knowledge.hover(Pause::Closed));
+            return Some(knowledge.wait(Wait::Closed));
         }
         self.close(next.cell(), here.cell());
-        Some(knowledge.hover(Pause::Search))
+        Some(knowledge.wait(Wait::Search))
     }
 
     /// The robot has come to the next column of its way: it has time for another.
@@ -381,8 +380,8 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             (Some(_), Some(_)) => {}
             (None, _) => {
                 self.obstacle = (here, false);
-                if let Some(target) = self.target {
-                    self.bar(target);
+                if let Some(goal) = self.goal {
+                    self.bar(goal);
                 }
                 if self.climbing {
                     self.begin(knowledge, self.edge.saturating_add(1));
@@ -396,7 +395,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             self.legs = knowledge.surface().known_columns();
             self.patience = self.patience.max(leg_steps(knowledge));
             self.leg = here;
-            self.way.begin(self.target);
+            self.way.begin(self.goal);
         }
     }
 
@@ -405,7 +404,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         if column != here {
             self.closed.insert(column);
         }
-        self.way.begin(self.target);
+        self.way.begin(self.goal);
     }
 
     /// Something keeps the robot from looking over `frontier`.
@@ -415,20 +414,20 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 
     /// The same, and it is not tried any further in this round.
-    fn give_up(&mut self, target: Cell) {
-        self.bar(target);
-        self.tried.insert(target);
-        self.target = None;
+    fn give_up(&mut self, goal: Cell) {
+        self.bar(goal);
+        self.tried.insert(goal);
+        self.goal = None;
     }
 
-    /// No way leads to the target, nor to anything that is connected with it.
+    /// No way leads to the goal, nor to anything that is connected with it.
     fn give_up_all(&mut self) {
         let words = self.tried.values_mut().zip(self.barred.values_mut());
         for ((tried, barred), wet) in words.zip(self.way.wet()) {
             *barred |= wet & !*tried;
             *tried |= wet;
         }
-        self.target = None;
+        self.goal = None;
         self.is_barred = true;
     }
 
@@ -443,7 +442,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     }
 
     /// Nothing is left to try: it is tried again, or the robot stops.
-    fn end_round(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action {
+    fn end_round(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action<Point> {
         let frontiers = knowledge.surface().frontiers();
         if !self.is_barred {
             let at = knowledge.unseen_place();
@@ -453,7 +452,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             self.rest = REST << self.round;
             self.round = self.round.saturating_add(1);
             self.begin_round();
-            return knowledge.hover(Pause::Closed);
+            return knowledge.wait(Wait::Closed);
         }
         knowledge.stop(match self.obstacle {
             (at, false) => Stop::Blocked { frontiers, at },
@@ -489,14 +488,14 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         }
     }
 
-    /// Sets out for the target's edge number `edge`.
+    /// Sets out for the goal's edge number `edge`.
     fn begin(&mut self, knowledge: &Knowledge<TW, TH>, edge: u8) {
         self.edge = edge;
         self.climbing = false;
         self.is_hindered = false;
         self.leg = knowledge.position().cell();
         self.legs = knowledge.surface().known_columns();
-        self.patience = self.target.map_or(0, |cell| {
+        self.patience = self.goal.map_or(0, |cell| {
             let way = knowledge.position().plan_distance(Point::over(cell, 0.0));
             ((8.0 * way / knowledge.limits().step) as u16).saturating_add(30)
         });

@@ -10,6 +10,7 @@ use crate::cell::{Direction, Extent};
 use crate::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use crate::fcao::{self, Fcao};
 use crate::radio::LinkConfig;
+use crate::robot::{Activity, Stop};
 use crate::surface::{Height, Surface, in_sight};
 
 const SIDE: i16 = 14;
@@ -32,12 +33,12 @@ fn coordinated() -> Robot {
         seed: 3,
         choice: Choice::Map,
     };
-    std::boxed::Box::new(CoordinatedSurvey::<2, 2>::new(EXTENT, config, 0).unwrap())
+    std::boxed::Box::new(CoordinatedSurvey::<2, 2>::new(config, RobotId(0), EXTENT).unwrap())
 }
 
 fn published() -> Robot {
     let config = fcao::Config::new(LIMITS, 3);
-    std::boxed::Box::new(Fcao::<2, 2>::new(EXTENT, config, 0).unwrap())
+    std::boxed::Box::new(Fcao::<2, 2>::new(config, RobotId(0), EXTENT).unwrap())
 }
 
 /// A surface, and what is wrong with it.
@@ -119,7 +120,7 @@ impl World {
 }
 
 /// What others say in the steps of the script, round and round, before they fall silent.
-type Script = Vec<Vec<(u8, Status)>>;
+type Script = Vec<Vec<(u8, Status<Point, Cell>)>>;
 
 /// The stop, and the step in which it came.
 fn fly(robot: &mut Robot, world: &World, script: &Script, loud: u32, most: u32) -> (Stop, u32) {
@@ -128,11 +129,11 @@ fn fly(robot: &mut Robot, world: &World, script: &Script, loud: u32, most: u32) 
         robot.observe(at, &world.look(at, step));
         if step < loud && !script.is_empty() {
             for &(id, status) in &script[step as usize % script.len()] {
-                robot.hear(id, status);
+                robot.hear(RobotId(id), status);
             }
         }
         match robot.tick() {
-            Action::Fly(to) => {
+            Action::Move(to) => {
                 assert!(at.distance(to) <= LIMITS.step + 1e-3);
                 if world.refuses(at, to) {
                     robot.report(Motion::Blocked, at);
@@ -141,7 +142,7 @@ fn fly(robot: &mut Robot, world: &World, script: &Script, loud: u32, most: u32) 
                     robot.report(Motion::Moved, at);
                 }
             }
-            Action::Hover => {}
+            Action::Wait => {}
             Action::Stop(stop) => {
                 // It stays that.
                 for _ in 0..3 {
@@ -180,16 +181,16 @@ fn places(most: usize) -> impl Strategy<Value = BTreeSet<(i16, i16)>> {
     prop::collection::btree_set((0..SIDE, 0..SIDE), 0..most)
 }
 
-fn status() -> impl Strategy<Value = Status> {
+fn status() -> impl Strategy<Value = Status<Point, Cell>> {
     let near = (0.0f32..14.0, 0.0f32..14.0, 0.0f32..8.0);
     let wild = prop::sample::select(std::vec![0.0f32, -1e9, 1e30, f32::NAN, f32::MAX, 7.0, 1.5]);
     let wild = (wild.clone(), wild.clone(), wild);
     let point = prop_oneof![9 => near, 1 => wild].prop_map(|(x, y, z)| Point::new(x, y, z));
     let cell = (-3i16..20, -3i16..20).prop_map(|(x, y)| Cell::new(x, y));
-    (point, prop::option::of(cell), any::<bool>()).prop_map(|(position, target, stopped)| Status {
+    (point, prop::option::of(cell), any::<bool>()).prop_map(|(position, goal, stopped)| Status {
         position,
-        target,
-        stopped,
+        goal,
+        activity: Activity::stopped_if(stopped),
     })
 }
 
@@ -268,18 +269,18 @@ proptest! {
             if (begin..begin + length).contains(&step) {
                 let known = robot.knowledge().surface().known_columns();
                 robot.observe(bad, &world.look(Point::new(12.0, 12.0, 3.0), step));
-                prop_assert_eq!(robot.tick(), Action::Hover);
+                prop_assert_eq!(robot.tick(), Action::Wait);
                 prop_assert_eq!(robot.waiting(), Some(Wait::Pose));
                 prop_assert_eq!(robot.knowledge().surface().known_columns(), known);
                 continue;
             }
             robot.observe(at, &world.look(at, step));
             match robot.tick() {
-                Action::Fly(to) => {
+                Action::Move(to) => {
                     at = to;
                     robot.report(Motion::Moved, at);
                 }
-                Action::Hover => {}
+                Action::Wait => {}
                 Action::Stop(stop) => {
                     prop_assert_eq!(stop, Stop::Complete);
                     break;
@@ -324,11 +325,11 @@ fn resume(robot: &mut Robot, world: &World) -> Stop {
     for step in 0..20_000 {
         robot.observe(at, &world.look(at, step));
         match robot.tick() {
-            Action::Fly(to) => {
+            Action::Move(to) => {
                 at = to;
                 robot.report(Motion::Moved, at);
             }
-            Action::Hover => {}
+            Action::Wait => {}
             Action::Stop(stop) => return stop,
         }
     }
@@ -366,12 +367,12 @@ fn too_low_rises_and_too_high_sinks() {
                 let seen = World::default().look(at, step);
                 robot.observe(at, if step == 0 { &ground } else { &seen });
                 match robot.tick() {
-                    Action::Fly(to) => {
+                    Action::Move(to) => {
                         assert!(at.distance(to) <= LIMITS.step + 1e-3);
                         at = to;
                         robot.report(Motion::Moved, at);
                     }
-                    Action::Hover => {}
+                    Action::Wait => {}
                     Action::Stop(stop) => {
                         assert_eq!(stop, Stop::Complete);
                         break;
@@ -400,8 +401,8 @@ fn a_robot_in_the_only_gap_is_named() {
                 let (x, y, z) = (6.2 + 0.8 * by(1, 3), 6.5 + by(3, 2), 10.5 + by(6, 2));
                 let status = Status {
                     position: Point::new(x, y, z),
-                    target: None,
-                    stopped: true,
+                    goal: None,
+                    activity: Activity::Stopped,
                 };
                 (1 + number, status)
             })

@@ -66,10 +66,11 @@ use heapless::Vec;
 
 use crate::cell::{Extent, ExtentError};
 use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, VoxelFrame};
-use crate::robot::{RobotId, Stop, Wait};
-use crate::survey::{Pause, Peer, Peers, Sender};
+use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
+use crate::survey::{Peer, Peers, Sender};
 use crate::tile::{TileIndex, every_tile};
 use crate::volume::{Content, Layer, Volume, Voxel, VoxelPatch};
+use crate::zeroed::Maybe;
 use far::Far;
 use news::News;
 
@@ -103,29 +104,6 @@ pub struct Config {
     pub link: LinkConfig,
 }
 
-/// What a robot says about itself: hints, never needed for completeness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Status {
-    /// Where it is.
-    pub position: Voxel,
-    /// The pose that it is on its way to.
-    pub goal: Option<Voxel>,
-    /// Whether it has stopped.
-    pub stopped: bool,
-}
-
-/// What the robot shall do now.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Action {
-    /// Fly to this voxel, which shares a face with the robot's.
-    Fly(Voxel),
-    /// Stay for this step. [`VoxelSurvey::waiting`] says why.
-    Hover,
-    /// Nothing is left that the robot could reach a view of, for this reason. Every later
-    /// tick returns the same, until the robot hears of more, or [`VoxelSurvey::resume`].
-    Stop(Stop<Voxel>),
-}
-
 /// The planner of one robot over a box of at most 8·`TW` × 8·`TH` × `L` voxels.
 ///
 /// Takes 57 bytes for each tile of a level: 22.8 KB for 40×40×16 voxels, and 1.3 KB.
@@ -139,7 +117,7 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     way: Vec<Voxel, WAY>,
     goal: Voxel,
     far: Far<TW, TH, L>,
-    peers: Peers<Status>,
+    peers: Peers<Status<Voxel>>,
     sender: Sender,
     news: News<TW, TH, L>,
     /// Where the look at all poses in turn stands, and those of its word that were
@@ -171,7 +149,7 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     stopped: bool,
     /// Why, and the number of known voxels then.
     reason: (Stop<Voxel>, u32),
-    pause: Pause,
+    waiting: Maybe<Wait>,
     work: u32,
 }
 
@@ -208,7 +186,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             last_known: 0,
             stopped: false,
             reason: (Stop::Complete, 0),
-            pause: Pause::None,
+            waiting: Maybe::Nothing,
             work: 0,
         }
     }
@@ -218,9 +196,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// # Errors
     /// The box is larger than the map.
-    pub fn new(extent: Extent, levels: u8, config: Config, id: u8) -> Result<Self, ExtentError> {
+    pub fn new(
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        levels: u8,
+    ) -> Result<Self, ExtentError> {
         let mut robot = Self::vacant();
-        robot.reset(extent, levels, config, id)?;
+        robot.reset(config, id, extent, levels)?;
         Ok(robot)
     }
 
@@ -230,10 +213,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// As [`new`](Self::new); nothing has changed then.
     pub fn reset(
         &mut self,
+        config: Config,
+        id: RobotId,
         extent: Extent,
         levels: u8,
-        config: Config,
-        id: u8,
     ) -> Result<(), ExtentError> {
         self.volume.reset(extent, levels)?;
         let LinkConfig {
@@ -244,7 +227,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.position = Voxel::new(0, 0, 0);
         self.goal = Voxel::new(0, 0, 0);
         self.peers = Peers::new();
-        self.sender = Sender::new(config.link, grid, RobotId(id));
+        self.sender = Sender::new(config.link, grid, id);
         self.news.reset();
         self.turn = (TileIndex { x: 0, y: 0 }, 0);
         self.passed = 0;
@@ -254,7 +237,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.lost = false;
         self.looked = false;
         self.last_known = 0;
-        self.pause = Pause::None;
+        self.waiting = Maybe::Nothing;
         self.work = 0;
         self.resume();
         Ok(())
@@ -275,10 +258,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.work
     }
 
-    /// Why the last [`tick`](Self::tick) was [`Action::Hover`]. `None`: it was not, or the
+    /// Why the last [`tick`](Self::tick) was [`Action::Wait`]. `None`: it was not, or the
     /// robot chooses where to fly next.
     pub const fn waiting(&self) -> Option<Wait> {
-        self.pause.reason()
+        self.waiting.get()
     }
 
     /// Begins a step: where the robot is, and every voxel in sight within the range,
@@ -286,7 +269,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// [`in_sight`](crate::volume::in_sight) over free voxels: at least the robot's own,
     /// so a look that shows nothing is one of a sensor that failed.
     ///
-    /// A robot that is not where the last [`Action::Fly`] sent it was kept from there.
+    /// A robot that is not where the last [`Action::Move`] sent it was kept from there.
     /// From a place off the box or inside something known nothing is learnt and nothing
     /// decided: the robot hovers, and [`waiting`](Self::waiting) is [`Wait::Pose`], until
     /// a pose is good again.
@@ -360,23 +343,26 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// What the robot tells the others about itself.
-    pub fn status(&self) -> Status {
+    pub fn status(&self) -> Status<Voxel> {
         Status {
             position: self.position,
             goal: (!self.way.is_empty()).then_some(self.goal),
-            stopped: self.stopped,
+            activity: Activity::stopped_if(self.stopped),
         }
     }
 
     /// Takes in what robot `id` told about itself.
-    pub fn hear(&mut self, id: u8, status: Status) {
+    pub fn hear(&mut self, id: RobotId, status: Status<Voxel>) {
         self.peers.hear(id, status);
     }
 
     /// The heard robots that still explore.
-    fn rivals(&self) -> impl Iterator<Item = &Status> {
-        let statuses = self.peers.iter().map(|peer: &Peer<Status>| &peer.status);
-        statuses.filter(|status| !status.stopped)
+    fn rivals(&self) -> impl Iterator<Item = &Status<Voxel>> {
+        let statuses = self
+            .peers
+            .iter()
+            .map(|peer: &Peer<Status<Voxel>>| &peer.status);
+        statuses.filter(|status| !status.has_stopped())
     }
 
     /// Whether a rival, or where it goes, is nearer to `pose`, and that counts.
@@ -432,7 +418,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             }
         }
         self.peers
-            .hear_frame(frame.sender.0, frame.status, frame.sequence);
+            .hear_frame(frame.sender, frame.status, frame.sequence);
         Ok(self.volume.known_voxels() - before)
     }
 
@@ -452,31 +438,34 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.sender.hearsay
     }
 
-    /// Decides. Call it once per step.
+    /// Decides. Call it once per step. The move is to a voxel that shares a face with the
+    /// robot's; the stop says why nothing is left that the robot could reach a view of.
+    /// Every later tick returns the same, until the robot hears of more, or
+    /// [`resume`](Self::resume).
     ///
     /// Cost: 512 poses near by and the views from 24 of them; beside these, views and
     /// searches begin until 65,536 words were looked at. A view is at most one ray for
     /// each voxel within range.
-    pub fn tick(&mut self) -> Action {
+    pub fn tick(&mut self) -> Action<Voxel, Voxel> {
         self.work = 0;
-        self.pause = Pause::None;
+        self.waiting = Maybe::Nothing;
         self.peers.age();
         self.sender.tick();
         let action = self.decide();
         self.sent_to = match action {
-            Action::Fly(to) => Some(to),
-            Action::Hover | Action::Stop(_) => None,
+            Action::Move(to) => Some(to),
+            Action::Wait | Action::Stop(_) => None,
         };
         action
     }
 
-    fn decide(&mut self) -> Action {
+    fn decide(&mut self) -> Action<Voxel, Voxel> {
         let known = self.volume.known_voxels();
         if !core::mem::take(&mut self.looked) {
             self.silent = self.silent.saturating_add(1);
         }
         if self.lost {
-            return self.hover(Pause::Pose);
+            return self.wait(Wait::Pose);
         }
         let (reason, known_then) = self.reason;
         if self.stopped && known_then == known {
@@ -490,11 +479,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             });
         }
         if self.silent > 0 {
-            return self.hover(Pause::Sight);
+            return self.wait(Wait::Sight);
         }
         if self.rest > 0 {
             self.rest = self.rest.saturating_sub(1);
-            return self.hover(Pause::Closed);
+            return self.wait(Wait::Closed);
         }
         self.fruitless = if known == self.last_known {
             self.fruitless.saturating_add(1)
@@ -515,18 +504,18 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             return action;
         }
         match self.look_far() {
-            far::Found::Way => self.follow().unwrap_or(Action::Hover),
-            far::Found::Searching => self.hover(Pause::Search),
+            far::Found::Way => self.follow().unwrap_or(Action::Wait),
+            far::Found::Searching => self.wait(Wait::Search),
             far::Found::Nothing => self.end_round(),
         }
     }
 
-    fn hover(&mut self, pause: Pause) -> Action {
-        self.pause = pause;
-        Action::Hover
+    fn wait(&mut self, reason: Wait) -> Action<Voxel, Voxel> {
+        self.waiting = Maybe::Just(reason);
+        Action::Wait
     }
 
-    fn stop(&mut self, reason: Stop<Voxel>) -> Action {
+    fn stop(&mut self, reason: Stop<Voxel>) -> Action<Voxel, Voxel> {
         self.way.clear();
         self.stopped = true;
         self.reason = (reason, self.volume.known_voxels());
@@ -534,7 +523,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// Nothing is left to fly to: what is closed is tried again, or the robot stops.
-    fn end_round(&mut self) -> Action {
+    fn end_round(&mut self) -> Action<Voxel, Voxel> {
         let frontiers = self.volume.frontiers();
         if self.is_closed {
             let known = self.volume.known_voxels();
@@ -549,7 +538,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.rest = REST << self.round;
             self.round = self.round.saturating_add(1);
             self.open_all();
-            return self.hover(Pause::Closed);
+            return self.wait(Wait::Closed);
         }
         let missed = if self.has_missed {
             self.missed_place()
@@ -615,14 +604,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// The next step of the way, unless there is none or the goal is done.
-    fn follow(&mut self) -> Option<Action> {
+    fn follow(&mut self) -> Option<Action<Voxel, Voxel>> {
         if self.done.get(self.goal) {
             self.way.clear();
         }
         let next = self.way.pop()?;
         let is_beside = self.position.distance_squared(next) == 1;
         if is_beside && self.volume.is_pose(next) && !self.closed.get(next) {
-            return Some(Action::Fly(next));
+            return Some(Action::Move(next));
         }
         self.way.clear();
         None

@@ -2,8 +2,9 @@
 
 use heapless::Vec;
 
-use super::{Action, VoxelSurvey};
+use super::VoxelSurvey;
 use crate::list;
+use crate::robot::Action;
 use crate::volume::Voxel;
 
 /// Poses around the robot that are considered.
@@ -40,7 +41,7 @@ struct Place {
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// A flight to the pose near by that shows the most for its distance; `None` if
     /// all poses near by are done.
-    pub(super) fn look_near(&mut self) -> Option<Action> {
+    pub(super) fn look_near(&mut self) -> Option<Action<Voxel, Voxel>> {
         let places = self.places();
         let best = loop {
             let is_open = |place: &&Place| !self.done.get(place.at);
@@ -55,7 +56,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             }
         };
         let Some(mut number) = best else {
-            return Some(Action::Hover);
+            return Some(Action::Wait);
         };
         self.way.clear();
         if let Some(goal) = places.get(usize::from(number)) {
@@ -71,7 +72,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             list::push_out(&mut self.way, place.at);
             number = place.before;
         }
-        Some(self.follow().unwrap_or(Action::Hover))
+        Some(self.follow().unwrap_or(Action::Wait))
     }
 
     /// The number of the best of `places`, looked at in strides.

@@ -104,7 +104,7 @@ fn scene(scattered: &Scattered, slabs: &Slabs) -> BTreeSet<Voxel> {
 enum Hostile {
     Bytes(Vec<u8>),
     Forged {
-        status: Status,
+        status: Status<Voxel>,
         patches: Vec<(u8, u8, u8, u64, u64)>,
         sequence: u16,
     },
@@ -121,7 +121,7 @@ fn hostile() -> impl Strategy<Value = Hostile> {
         |(position, goal, stopped)| Status {
             position,
             goal,
-            stopped,
+            activity: Activity::stopped_if(stopped),
         },
     );
     let patch = (
@@ -156,8 +156,8 @@ proptest! {
         script in prop::collection::vec(prop::collection::vec(hostile(), 0..4), 1..60),
     ) {
         let walls = scene(&scattered, &slabs);
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
-        let mut speaker = Robot::new(EXTENT, LEVELS, CONFIG, 1).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+        let mut speaker = Robot::new(CONFIG, RobotId(1), EXTENT, LEVELS).unwrap();
         let mut air: Vec<Vec<u8>> = Vec::new();
         let mut at = START;
         for step in 0.. {
@@ -215,13 +215,13 @@ proptest! {
                 }
             }
             match robot.tick() {
-                Action::Fly(to) => {
+                Action::Move(to) => {
                     prop_assert_eq!(at.distance_squared(to), 1);
                     prop_assert!(is_inside(to) && !walls.contains(&to));
                     prop_assert!(to.beside().iter().all(|beside| !walls.contains(beside)));
                     at = to;
                 }
-                Action::Hover => {}
+                Action::Wait => {}
                 Action::Stop(_) => break,
             }
         }
@@ -239,7 +239,7 @@ proptest! {
         let walls = scene(&scattered, &slabs);
         let link = LinkConfig { bytes_per_tick, ..LinkConfig::new() };
         let config = Config { link, ..CONFIG };
-        let mut robots = [0, 1].map(|id| Robot::new(EXTENT, LEVELS, config, id).unwrap());
+        let mut robots = [0, 1].map(|id| Robot::new(config, RobotId(id), EXTENT, LEVELS).unwrap());
         robots[0].observe(START, &look(&walls, START));
         let mut buffer = [0; MAX_LEN];
         // By chance: what is lost in turn could be what is told in turn, for ever.
@@ -268,7 +268,7 @@ proptest! {
 /// late or replayed does not bring back where the other was.
 #[test]
 fn late_frames_are_old_news() {
-    let mut robots = [0, 1].map(|id| Robot::new(EXTENT, LEVELS, CONFIG, id).unwrap());
+    let mut robots = [0, 1].map(|id| Robot::new(CONFIG, RobotId(id), EXTENT, LEVELS).unwrap());
     let frames: Vec<Vec<u8>> = (3..6)
         .map(|x| {
             let mut buffer = [0; MAX_LEN];
@@ -286,7 +286,7 @@ fn late_frames_are_old_news() {
     let mut buffer = [0; MAX_LEN];
     robots[0].tick();
     let length = robots[0].transmit(&mut buffer).unwrap();
-    let mut twin = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    let mut twin = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
     let refused = twin.receive(&buffer[..length]);
     assert_eq!(refused, Err(FrameError::SameId(RobotId(0))));
     assert_eq!(twin.hearsay().same_id, 1);
@@ -308,7 +308,7 @@ proptest! {
         (scattered, slabs) in walls(),
     ) {
         let walls = scene(&scattered, &slabs);
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         let mut steps = 0;
         loop {
@@ -316,13 +316,13 @@ proptest! {
             let action = robot.tick();
             prop_assert!(robot.work() <= MOST_WORK, "{}", robot.work());
             match action {
-                Action::Fly(to) => {
+                Action::Move(to) => {
                     prop_assert_eq!(at.distance_squared(to), 1);
                     prop_assert!(is_inside(to) && !walls.contains(&to));
                     prop_assert!(to.beside().iter().all(|beside| !walls.contains(beside)));
                     at = to;
                 }
-                Action::Hover => {}
+                Action::Wait => {}
                 Action::Stop(stop) => {
                     prop_assert!(stop.is_complete(), "{stop}");
                     prop_assert_eq!(stop.left(), robot.volume().frontiers());
@@ -400,18 +400,18 @@ impl World {
             robot.observe(*at, &self.look(*at, step));
             if step < loud && !script.is_empty() {
                 for &(id, status) in &script[step as usize % script.len()] {
-                    robot.hear(id, status);
+                    robot.hear(RobotId(id), status);
                 }
             }
             match robot.tick() {
-                Action::Fly(to) => {
+                Action::Move(to) => {
                     assert_eq!(at.distance_squared(to), 1);
                     assert!(!self.walls.contains(&to));
                     if !self.glass.contains(&to) {
                         *at = to;
                     }
                 }
-                Action::Hover => {}
+                Action::Wait => {}
                 Action::Stop(stop) => {
                     for _ in 0..3 {
                         robot.observe(*at, &self.look(*at, step));
@@ -446,7 +446,7 @@ impl World {
 }
 
 /// What others say in the steps of the script, round and round.
-type Script = Vec<Vec<(u8, Status)>>;
+type Script = Vec<Vec<(u8, Status<Voxel>)>>;
 
 fn script() -> impl Strategy<Value = Script> {
     let coordinate = || prop_oneof![9 => -2i16..14, 1 => any::<i16>()];
@@ -457,7 +457,7 @@ fn script() -> impl Strategy<Value = Script> {
         |(position, goal, stopped)| Status {
             position,
             goal,
-            stopped,
+            activity: Activity::stopped_if(stopped),
         },
     );
     prop::collection::vec(prop::collection::vec((1u8..20, status), 0..16), 0..8)
@@ -486,7 +486,7 @@ proptest! {
         let walls = scene(&scattered, &slabs);
         let dark: BTreeSet<_> = dark.into_iter().filter(|voxel| !START.beside().contains(voxel)).collect();
         let world = World { walls, glass, dark, silent_from };
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         let (stop, _) = world.fly(&mut robot, &mut at, &script, loud, 200_000);
         world.is_true(stop, &robot);
@@ -511,22 +511,22 @@ proptest! {
             walls: all().filter(|voxel| voxel.z == 0).collect(),
             ..World::default()
         };
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         for step in 0.. {
             prop_assert!(step < 5_000);
             if (begin..begin + length).contains(&step) && step > 0 {
                 let known = robot.volume().known_voxels();
                 robot.observe(bad, &world.look(Voxel::new(9, 9, 5), step));
-                prop_assert_eq!(robot.tick(), Action::Hover);
+                prop_assert_eq!(robot.tick(), Action::Wait);
                 prop_assert_eq!(robot.waiting(), Some(Wait::Pose));
                 prop_assert_eq!(robot.volume().known_voxels(), known);
                 continue;
             }
             robot.observe(at, &world.look(at, step));
             match robot.tick() {
-                Action::Fly(to) => at = to,
-                Action::Hover => {}
+                Action::Move(to) => at = to,
+                Action::Wait => {}
                 Action::Stop(stop) => {
                     prop_assert!(stop.is_complete(), "{stop}");
                     break;
@@ -551,7 +551,7 @@ fn glass_is_named_and_gaps_are_found() {
             glass: pane().filter(|&voxel| Some(voxel) != gap).collect(),
             ..World::default()
         };
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         let (stop, steps) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
         std::eprintln!("{stop} after {steps} steps");
@@ -584,7 +584,7 @@ fn a_dark_voxel_is_named() {
         dark: [dark].into(),
         ..World::default()
     };
-    let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
     let mut at = START;
     let (stop, _) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
     let frontiers = 6;
@@ -609,7 +609,7 @@ fn a_silent_sensor_is_a_reason_to_stop() {
             silent_from: Some(from),
             ..World::default()
         };
-        let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         let (stop, steps) = world.fly(&mut robot, &mut at, &Vec::new(), 0, 20_000);
         assert!(
@@ -627,17 +627,17 @@ fn a_silent_sensor_is_a_reason_to_stop() {
 #[test]
 fn a_reset_robot_is_a_new_one() {
     let world = World::default();
-    let mut robot = Robot::new(EXTENT, LEVELS, CONFIG, 3).unwrap();
+    let mut robot = Robot::new(CONFIG, RobotId(3), EXTENT, LEVELS).unwrap();
     world.fly(&mut robot, &mut START.clone(), &Vec::new(), 0, 20_000);
     let before = std::format!("{robot:?}");
     let (asked, capacity) = (Extent::new(17, 3), Extent::new(16, 16));
     assert_eq!(
-        robot.reset(asked, LEVELS, CONFIG, 1),
+        robot.reset(CONFIG, RobotId(1), asked, LEVELS),
         Err(ExtentError::TooLarge { asked, capacity })
     );
     assert_eq!(std::format!("{robot:?}"), before);
-    robot.reset(EXTENT, LEVELS, CONFIG, 0).unwrap();
-    let new = Robot::new(EXTENT, LEVELS, CONFIG, 0).unwrap();
+    robot.reset(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+    let new = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
     // Why it stopped last is remembered, and means nothing.
     robot.reason = new.reason;
     assert_eq!(std::format!("{robot:?}"), std::format!("{new:?}"));

@@ -5,11 +5,11 @@ use bridge::{
     SurveyorConfig, VERSION, Welcome, imprint, relief, told,
 };
 use firmware::{CLOCK_HZ, Stopwatch};
-use planner_core::Extent;
 use planner_core::coordinated_survey::CoordinatedSurvey;
 use planner_core::fcao::Fcao;
 use planner_core::radio::MAX_LEN;
 use planner_core::survey::{SetupError, Surveyor};
+use planner_core::{Extent, RobotId};
 use static_cell::ConstStaticCell;
 
 use crate::host::{Host, Trouble};
@@ -43,7 +43,7 @@ pub(crate) fn serve(
     inbox: &mut Inbox,
     outbox: &mut [u8; MAX_MESSAGE],
     stopwatch: &Stopwatch,
-    (planner, id, extent): (SurveyorConfig, u8, Extent),
+    (planner, id, extent): (SurveyorConfig, RobotId, Extent),
 ) -> Result<(), Trouble> {
     let (planner, size) = match prepare(planner, id, extent) {
         Ok(prepared) => prepared,
@@ -72,7 +72,7 @@ pub(crate) fn serve(
 /// Sets up the planner, in place. Returns its size too.
 fn prepare(
     planner: SurveyorConfig,
-    id: u8,
+    id: RobotId,
     extent: Extent,
 ) -> Result<(&'static mut Robot, usize), SetupError> {
     let hosted = HOSTED.take();
@@ -81,11 +81,11 @@ fn prepare(
     }
     match (hosted, planner) {
         (Hosted::Fcao(planner), SurveyorConfig::Fcao(config)) => {
-            planner.reset(extent, config, id)?;
+            planner.reset(config, id, extent)?;
             Ok((planner, size_of::<Fcao<TILES, TILES>>()))
         }
         (Hosted::Coordinated(planner), SurveyorConfig::Coordinated(config)) => {
-            planner.reset(extent, config, id)?;
+            planner.reset(config, id, extent)?;
             Ok((planner, size_of::<CoordinatedSurvey<TILES, TILES>>()))
         }
         _ => unreachable!("it was put there just now"),

@@ -5,8 +5,8 @@ use std::collections::{BTreeSet, HashSet};
 use planner_core::radio::{LinkConfig, MAX_LEN};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch, in_sight};
-use planner_core::voxel_survey::{Action, Config, MAX_RANGE, VoxelSurvey};
-use planner_core::{Point, Stop};
+use planner_core::voxel_survey::{Config, MAX_RANGE, VoxelSurvey};
+use planner_core::{Action, Point, RobotId, Stop};
 
 use super::file::Record;
 use super::scene::{LARGEST, LEVELS, Scene};
@@ -188,7 +188,7 @@ impl Simulation {
         };
         let mut robots = Vec::new();
         for id in 0..scenario.robots {
-            let robot = Robot::new(scene.extent(), scene.levels(), config, id as u8);
+            let robot = Robot::new(config, RobotId(id as u8), scene.extent(), scene.levels());
             robots.push(Box::new(robot?));
         }
         let visible = visible(scene, start, scenario.range);
@@ -283,9 +283,9 @@ impl Simulation {
             let work = robots[i].work();
             let (to, deed, stop) = match action {
                 // The run is given up before it flies.
-                Action::Fly(_) if *now >= scenario.max_ticks => (at, Deed::Hovered, None),
-                Action::Fly(to) => (to, Deed::Flew, None),
-                Action::Hover => (at, Deed::Hovered, None),
+                Action::Move(_) if *now >= scenario.max_ticks => (at, Deed::Hovered, None),
+                Action::Move(to) => (to, Deed::Flew, None),
+                Action::Wait => (at, Deed::Hovered, None),
                 Action::Stop(stop) => (at, Deed::Stopped(stop.into()), Some(stop)),
             };
             going |= stop.is_none();
@@ -368,7 +368,7 @@ impl Medium {
         let status = robots[from].status();
         for (to, robot) in robots.iter_mut().enumerate() {
             if to != from && self.arrives() {
-                robot.hear(from as u8, status);
+                robot.hear(RobotId(from as u8), status);
             }
         }
     }

@@ -8,14 +8,22 @@ use crate::radio::envelope::{CHECK, CRC};
 const GRID: GridId = GridId(0xcafe);
 const EXTENT: Extent = Extent::new(100, 61);
 
+/// A place in 1/128 of a cell.
+fn point(coordinates: [u16; 3]) -> Point {
+    let [x, y, z] = coordinates.map(|v| f32::from(v) / 128.0);
+    Point::new(x, y, z)
+}
+
 fn quiet() -> SurfaceFrame {
     SurfaceFrame {
         grid: GRID,
         sender: RobotId(7),
         sequence: 0x0102,
-        position: [0x0180, 0x1e40, 0x0540],
-        target: None,
-        stopped: true,
+        status: Status {
+            position: point([0x0180, 0x1e40, 0x0540]),
+            goal: None,
+            activity: Activity::Stopped,
+        },
         records: heapless::Vec::new(),
     }
 }
@@ -32,8 +40,11 @@ fn full() -> SurfaceFrame {
             .collect(),
     };
     SurfaceFrame {
-        target: Some(Cell::new(99, 60)),
-        stopped: false,
+        status: Status {
+            goal: Some(Cell::new(99, 60)),
+            activity: Activity::Exploring,
+            ..quiet().status
+        },
         records: heapless::Vec::from_slice(&[
             record(TileIndex { x: 2, y: 1 }, false, true, 0x8000_0003, 16),
             record(TileIndex { x: 12, y: 6 }, true, false, 0x0000_000f, 250),
@@ -47,7 +58,7 @@ fn full() -> SurfaceFrame {
 const QUIET: [u8; 19] = [
     // version, kind, grid, sender, sequence, state
     0x01, 0x02, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x01,
-    // position, target
+    // position, goal
     0x80, 0x01, 0x40, 0x1e, 0x40, 0x05, 0x00, 0x00, 0x00,
     // CRC
     0x06, 0x8c,
@@ -108,7 +119,7 @@ fn what_is_wrong_is_named() {
     assert_eq!(
         decoded(&altered(7, 0)),
         field(Field::Goal),
-        "a target that is not there"
+        "a goal that is not there"
     );
     assert_eq!(
         decoded(&altered(17, 0x4d)),
@@ -141,25 +152,27 @@ fn frame() -> impl Strategy<Value = SurfaceFrame> {
         any::<u64>(),
         any::<[u8; 32]>(),
     );
-    let target = proptest::option::of((0i16..100, 0i16..61));
+    let goal = proptest::option::of((0i16..100, 0i16..61));
     let records = prop::collection::vec(record, 0..5);
     let position = (0u16..100 * 128, 0u16..61 * 128, any::<u16>());
     (
         any::<u8>(),
         any::<u16>(),
         position,
-        target,
+        goal,
         any::<bool>(),
         records,
     )
-        .prop_map(|(sender, sequence, (x, y, z), target, stopped, records)| {
+        .prop_map(|(sender, sequence, (x, y, z), goal, stopped, records)| {
             let mut frame = SurfaceFrame {
                 grid: GRID,
                 sender: RobotId(sender),
                 sequence,
-                position: [x, y, z],
-                target: target.map(|(x, y)| Cell::new(x, y)),
-                stopped,
+                status: Status {
+                    position: point([x, y, z]),
+                    goal: goal.map(|(x, y)| Cell::new(x, y)),
+                    activity: Activity::stopped_if(stopped),
+                },
                 records: heapless::Vec::new(),
             };
             let mut taken = 0;

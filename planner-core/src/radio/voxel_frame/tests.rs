@@ -17,7 +17,7 @@ fn quiet() -> VoxelFrame {
         status: Status {
             position: Voxel::new(3, 60, 17),
             goal: None,
-            stopped: true,
+            activity: Activity::Stopped,
         },
         patches: heapless::Vec::new(),
     }
@@ -34,7 +34,7 @@ fn full() -> VoxelFrame {
         status: Status {
             position: Voxel::new(3, 60, 17),
             goal: Some(Voxel::new(99, 17, 4)),
-            stopped: false,
+            activity: Activity::Exploring,
         },
         patches: heapless::Vec::from_slice(&[
             patch(2, 1, 5, !0, 0),
@@ -188,7 +188,7 @@ fn frame() -> impl Strategy<Value = VoxelFrame> {
                 status: Status {
                     position,
                     goal,
-                    stopped,
+                    activity: Activity::stopped_if(stopped),
                 },
                 patches: heapless::Vec::new(),
             };

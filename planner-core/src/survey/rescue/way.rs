@@ -11,7 +11,7 @@ const SLICE: u32 = 1024;
 /// What [`Way::next`] knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// The neighbouring column that is one nearer to the target.
+    /// The neighbouring column that is one nearer to the goal.
     Column(Cell),
     /// Not yet.
     Searching,
@@ -19,8 +19,8 @@ pub(super) enum Next {
     None,
 }
 
-/// A wave from a target over known columns, until it wets the robot's. A column's
-/// distance is kept modulo 3: the next one towards the target has one less.
+/// A wave from a goal over known columns, until it wets the robot's. A column's
+/// distance is kept modulo 3: the next one towards the goal has one less.
 #[derive(Clone, Debug)]
 pub(super) struct Way<const TW: usize, const TH: usize> {
     layers: [Tiles<u64, TW, TH>; 3],
@@ -48,8 +48,8 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         }
     }
 
-    /// Begins anew, from `target`.
-    pub(super) fn begin(&mut self, target: Option<Cell>) {
+    /// Begins anew, from `goal`.
+    pub(super) fn begin(&mut self, goal: Option<Cell>) {
         // Each by itself: a new `Self` would be made on the stack first.
         for layer in &mut self.layers {
             layer.fill(0);
@@ -60,7 +60,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         self.is_done = false;
         self.is_cut = false;
         let [first, ..] = &mut self.layers;
-        if let Some(cell) = target {
+        if let Some(cell) = goal {
             first.insert(cell);
         }
     }
@@ -106,7 +106,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         nearer.map_or(Next::None, Next::Column)
     }
 
-    /// Distance of `cell` from the target modulo 3, if it is wet.
+    /// Distance of `cell` from the goal modulo 3, if it is wet.
     fn distance(&self, cell: Cell) -> Option<usize> {
         self.layers.iter().position(|layer| layer.contains(cell))
     }

@@ -4,10 +4,13 @@
 //! radio. Where two bodies are in each other's way, the roles pass through each
 //! other by an exchange of bodies.
 
-use super::maybe::Maybe;
-use super::path::Path;
+mod path;
+
+pub(crate) use path::{CAPACITY, Path};
+
 use crate::cell::{Cell, Direction};
 use crate::robot::{RobotId, Stop};
+use crate::zeroed::Maybe;
 
 /// Where a role is going, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +24,7 @@ pub(crate) struct Plan {
 }
 
 /// Plans that a role may lose by exchanges; then bodies in its way count as obstacles,
-/// until it learns something or a round of [`Aside`](super::aside::Aside) ends. Bodies set
+/// until it learns something or a round of cells set aside ends. Bodies set
 /// cells aside each for itself: without a limit they could send roles round and round.
 const MOST_LOST: u8 = 4;
 

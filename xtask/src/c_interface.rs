@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSymbol};
 
 use crate::shell::{self, cargo, command};
-use crate::{firmware, host, install};
+use crate::{firmware, host, install, tools};
 
 const HEADER: &str = "c-api/include/planner.h";
 
@@ -30,16 +30,7 @@ pub(crate) fn header_is_current() -> Result<String> {
 }
 
 fn header() -> Result<String> {
-    let folder = shell::root().join("c-api");
-    let config = cbindgen::Config::from_file(folder.join("cbindgen.toml"))
-        .map_err(|error| anyhow::anyhow!("c-api/cbindgen.toml: {error}"))?;
-    let mut sources = cbindgen::Builder::new().with_config(config);
-    for source in ["lib.rs", "place.rs", "types.rs"] {
-        sources = sources.with_src(folder.join("src").join(source));
-    }
-    let mut text = Vec::new();
-    sources.generate()?.write(&mut text);
-    Ok(String::from_utf8(text)?)
+    tools::run("c-header", [shell::root().join("c-api")])
 }
 
 /// The library for the chip.

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use object::{Object, ObjectSegment, ObjectSymbol, SymbolKind};
 
 use crate::shell::{self, Command, Output, cargo, command};
-use crate::{budget, host, install, logs};
+use crate::{budget, host, install, tools};
 
 /// The chip's target: Cortex-M4 with its floating-point unit.
 pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
@@ -222,7 +222,7 @@ pub(crate) fn example_explores() -> Result<String> {
     let image = measure(&path("stm32f405", TARGET))?;
     // What is flashed logs over RTT, which the emulator has not; but what it says
     // can be read if its table can.
-    logs::table(&image.path)?;
+    tools::run("logs", [&image.path])?;
     install::qemu()?;
     let output = emulate("emulated")?;
     if !output.success() {
@@ -232,12 +232,13 @@ pub(crate) fn example_explores() -> Result<String> {
             output.stderr
         );
     }
-    let lines = logs::decode(&path("emulated", TARGET), &output.bytes)?;
-    for line in &lines {
-        println!("{line}");
-    }
+    let image_that_ran = path("emulated", TARGET);
+    let bytes = image_that_ran.with_extension("logs");
+    std::fs::write(&bytes, &output.bytes)?;
+    let logs = tools::run("logs", [image_that_ran, bytes])?;
+    print!("{logs}");
     for expected in EXPECTED_LOGS {
-        if !lines.iter().any(|line| line.contains(expected)) {
+        if !logs.contains(expected) {
             bail!("the example never logs {expected:?}");
         }
     }
@@ -245,7 +246,7 @@ pub(crate) fn example_explores() -> Result<String> {
         "flash {}, static RAM {} bytes; {} logs",
         image.flash,
         image.statics,
-        lines.len()
+        logs.lines().count()
     ))
 }
 

@@ -2,13 +2,12 @@
 
 use std::fs;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use miniz_oxide::deflate::compress_to_vec;
-use wasm_bindgen_cli_support::Bindgen;
 
 use crate::firmware::{self, Machine};
 use crate::shell::{cargo, root};
-use crate::{host, install};
+use crate::{host, install, tools};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
@@ -26,19 +25,8 @@ pub(crate) fn build_page() -> Result<String> {
     .args(["--profile=web", "--target", TARGET])
     .run()?;
     let dist = root().join("dist");
-    Bindgen::new()
-        .input_path(host::built().join(TARGET).join("web/lab.wasm"))
-        .web(true)
-        .and_then(|bindgen| {
-            bindgen
-                .typescript(false)
-                // The page does not say where the program is: beside the script.
-                .omit_default_module_path(false)
-                .remove_name_section(true)
-                .out_name("lab")
-                .generate(&dist)
-        })
-        .context("the program cannot be fitted for the browser")?;
+    let program = host::built().join(TARGET).join("web/lab.wasm");
+    tools::run("page", [&program, &dist])?;
     fs::copy(root().join("lab/index.html"), dist.join("index.html"))?;
     let program = fs::read(dist.join("lab_bg.wasm"))?;
     let compressed = compress_to_vec(&program, 9).len();

@@ -43,8 +43,8 @@ mod fuzz;
 mod host;
 mod install;
 mod lab;
-mod logs;
 mod shell;
+mod tools;
 mod worst;
 
 use std::process::ExitCode;

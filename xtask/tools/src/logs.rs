@@ -1,5 +1,6 @@
 //! Logs of an image: bytes that only its own table of formats makes sense of.
 
+use std::io::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
@@ -16,18 +17,19 @@ pub(crate) fn table(image: &Path) -> Result<Table> {
     Ok(table)
 }
 
-/// The lines that an image has logged.
-pub(crate) fn decode(image: &Path, bytes: &[u8]) -> Result<Vec<String>> {
+/// The lines that an image has logged as these bytes.
+pub(crate) fn decode(image: &Path, bytes: &Path) -> Result<Vec<u8>> {
     let table = table(image)?;
     let mut decoder = table.new_stream_decoder();
-    decoder.received(bytes);
+    decoder.received(&std::fs::read(bytes)?);
     let mut lines = Vec::new();
     loop {
         match decoder.decode() {
-            Ok(frame) => lines.push(frame.display(false).to_string()),
+            Ok(frame) => writeln!(lines, "{}", frame.display(false))?,
             Err(DecodeError::UnexpectedEof) => return Ok(lines),
             Err(DecodeError::Malformed) => {
-                bail!("log {} of {} makes no sense", lines.len(), image.display())
+                let end = String::from_utf8_lossy(&lines);
+                bail!("what {} logs makes no sense after\n{end}", image.display())
             }
         }
     }

@@ -3,9 +3,10 @@
 
 use std::sync::Arc;
 
-use host_sim::fleet::{Blind, Closure, Death, Faults, LostPose, SensorFailure};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Scenario, default_max_ticks, run};
+use host_sim::run::{Options, run};
+use host_sim::scenario::grid::{Scenario, default_max_ticks};
+use host_sim::scenario::{CellSpan, Conditions, Event, Faults, RobotSpan};
 use host_sim::world::{Family, Starts, generate};
 use planner_core::explorer::Config;
 use planner_core::{Cell, RobotId};
@@ -73,11 +74,11 @@ fn scenario(case: &Case) -> Option<Scenario> {
     let starts = world
         .place(robots, &Starts::Random(case.seed), case.solid)
         .ok()?;
-    let deaths = case.deaths.iter().map(|&(robot, tick)| Death {
+    let deaths = case.deaths.iter().map(|&(robot, tick)| Event {
         robot: RobotId(robot % robots as u8),
         tick,
     });
-    let closures = case.closures.iter().map(|(cell, from, length)| Closure {
+    let closures = case.closures.iter().map(|(cell, from, length)| CellSpan {
         cell: *cell.get(&cells),
         from: *from,
         until: (from + length).min(CLEARED),
@@ -86,27 +87,28 @@ fn scenario(case: &Case) -> Option<Scenario> {
         default_max_ticks(&world.reachable(&starts), PlannerKind::Explorer) + 4 * CLEARED;
     Some(Scenario {
         range: case.range,
-        sync: case.sync,
-        loss: case.loss,
-        seed: case.seed,
         solid: case.solid,
-        max_ticks,
-        faults: Faults {
-            deaths: deaths.collect(),
-            closures: closures.collect(),
-            ..Faults::default()
+        conditions: Conditions {
+            sync: case.sync,
+            loss: case.loss,
+            faults: Faults {
+                deaths: deaths.collect(),
+                closures: closures.collect(),
+                ..Faults::default()
+            },
+            ..Conditions::new(case.seed, max_ticks)
         },
         ..Scenario::new(Arc::new(world), starts, PlannerKind::Explorer)
     })
 }
 
 /// Robots that lose their poses, and for how many ticks.
-fn lost_poses() -> impl Strategy<Value = Vec<LostPose>> {
+fn lost_poses() -> impl Strategy<Value = Vec<RobotSpan>> {
     let spell = (0u8..10, 0u32..300, 1u32..=50);
     prop::collection::vec(spell, 0..4).prop_map(|spells| {
         let spells = spells.into_iter();
         spells
-            .map(|(robot, from, ticks)| LostPose {
+            .map(|(robot, from, ticks)| RobotSpan {
                 robot: RobotId(robot),
                 from,
                 until: from + ticks,
@@ -126,9 +128,11 @@ proptest! {
             return Err(TestCaseError::reject("no such world"));
         };
         scenario.fov = fov;
-        scenario.faults.lost_poses = lost_poses;
+        scenario.conditions.faults.lost_poses = lost_poses;
+        let robots = scenario.starts.len();
+        scenario.conditions.faults.lost_poses.retain(|of| usize::from(of.robot.0) < robots);
         // Four looks from every cell.
-        scenario.max_ticks *= 5;
+        scenario.conditions.max_ticks *= 5;
         let (outcome, _) = run(&scenario, Options::default()).unwrap();
         prop_assert!(outcome.violations.is_empty(), "{:?}", outcome.violations);
         for (index, robot) in outcome.robots.iter().enumerate().filter(|(_, robot)| robot.alive) {
@@ -155,21 +159,22 @@ proptest! {
         let cells = (0..height).flat_map(|y| (0..width).map(move |x| Cell::new(x, y)));
         let walls: Vec<Cell> = cells.filter(|&cell| !scenario.world.is_free(cell)).collect();
         prop_assume!(!walls.is_empty());
-        let blind = glass.iter().map(|of| Blind {
+        let blind = glass.iter().map(|of| CellSpan {
             cell: *of.get(&walls),
             from: 0,
             until: u32::MAX,
         });
-        scenario.faults.blind = blind.collect();
-        let silent = silent.map(|(robot, tick)| SensorFailure {
-            robot: RobotId(robot),
+        scenario.conditions.faults.blind = blind.collect();
+        let robots = scenario.starts.len() as u8;
+        let silent = silent.map(|(robot, tick)| Event {
+            robot: RobotId(robot % robots),
             tick,
         });
-        scenario.faults.sensor_failures = silent.into_iter().collect();
+        scenario.conditions.faults.sensor_failures = silent.into_iter().collect();
         scenario.fov = fov;
         // A robot that sees nothing stands in the way for good.
         scenario.solid = false;
-        scenario.max_ticks *= 5;
+        scenario.conditions.max_ticks *= 5;
         let (outcome, _) = run(&scenario, Options::default()).unwrap();
         for (index, robot) in outcome.robots.iter().enumerate().filter(|(_, robot)| robot.alive) {
             prop_assert!(robot.stop.is_some(), "robot {index} goes on for ever");

@@ -9,10 +9,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use clap::ValueEnum;
-use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Scenario, run};
-use host_sim::survey::{self, TerrainSource, voxels};
+use host_sim::run::{self, Options, run};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{Conditions, MediumKind, heights, voxels};
+use host_sim::terrain::TerrainSource;
 use host_sim::world::{ReadOptions, World};
 
 /// Ticks and digest of the scenario `map planner robots medium loss`.
@@ -28,11 +29,9 @@ fn trace_of(scenario: &str) -> String {
     let robots = robots.parse().unwrap();
     let starts = world.place(robots, &world.default_starts(), false).unwrap();
     let planner = PlannerKind::from_str(planner, false).unwrap();
-    let scenario = Scenario {
-        medium: MediumKind::from_str(medium, false).unwrap(),
-        loss: loss.parse().unwrap(),
-        ..Scenario::new(world, starts, planner)
-    };
+    let mut scenario = Scenario::new(world, starts, planner);
+    scenario.conditions.medium = MediumKind::from_str(medium, false).unwrap();
+    scenario.conditions.loss = loss.parse().unwrap();
     let options = Options {
         trace: true,
         ..Options::default()
@@ -51,29 +50,31 @@ fn survey_of(scenario: &str) -> String {
     };
     const SEED: u64 = 1;
     let (terrain, side): (TerrainSource, u16) = (terrain.parse().unwrap(), side.parse().unwrap());
-    let (robots, loss): (usize, f64) = (robots.parse().unwrap(), loss.parse().unwrap());
+    let robots = robots.parse().unwrap();
+    let mut conditions = Conditions {
+        medium: MediumKind::from_str(medium, false).unwrap(),
+        loss: loss.parse().unwrap(),
+        ..Conditions::flown(SEED)
+    };
+    if kill != "-" {
+        conditions.faults.deaths.push(kill.parse().unwrap());
+    }
     if let Some(scene) = terrain.scene(side) {
-        assert_eq!([planner, kill], ["voxel-survey", "-"]);
+        assert_eq!(planner, "voxel-survey");
         let scenario = voxels::Scenario {
+            robots,
             range: 6,
-            medium: MediumKind::from_str(medium, false).unwrap(),
-            loss,
-            ..voxels::Scenario::new(robots, SEED)
+            conditions,
         };
-        let trace = voxels::run(&scene, &scenario).unwrap();
+        let trace = run::voxels::run(&scene, &scenario).unwrap();
         return format!("{} {}", trace.seen.len() - 1, trace.digest());
     }
-    let planner = survey::Planner::from_str(planner, false).unwrap();
-    let scenario = survey::Scenario {
-        medium: MediumKind::from_str(medium, false).unwrap(),
-        loss,
-        kills: match kill {
-            "-" => Vec::new(),
-            kill => vec![kill.parse().unwrap()],
-        },
-        ..survey::Scenario::new(planner, robots, SEED)
+    let planner = heights::Planner::from_str(planner, false).unwrap();
+    let scenario = heights::Scenario {
+        conditions,
+        ..heights::Scenario::new(planner, robots, SEED)
     };
-    let trace = survey::run(&terrain.load(side).unwrap(), &scenario).unwrap();
+    let trace = run::heights::run(&terrain.load(side).unwrap(), &scenario).unwrap();
     format!("{} {}", trace.seen.len() - 1, trace.digest())
 }
 

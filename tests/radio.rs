@@ -7,12 +7,11 @@ mod hostile;
 
 use std::sync::Arc;
 
-use host_sim::fleet::{Arrival, Death, Faults, Restart};
-use host_sim::medium::{AirFaults, MediumKind, Partition, Reach};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Outcome, Scenario, run};
+use host_sim::run::{Options, Outcome, run};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{AirFaults, Event, Faults, MediumKind, Partition, Reach};
 use host_sim::world::{Family, Starts, generate};
-use planner_core::RobotId;
 use proptest::prelude::*;
 
 fn family() -> impl Strategy<Value = Family> {
@@ -53,60 +52,50 @@ fn air() -> impl Strategy<Value = AirFaults> {
 }
 
 /// What happens to some robots, each at most one thing of a kind.
-fn faults() -> impl Strategy<Value = Faults> {
-    let fate = || proptest::collection::vec((0u8..6, 0u32..150), 0..3);
-    (fate(), fate(), fate()).prop_map(|(deaths, arrivals, restarts)| {
-        let robot = |id| RobotId(id);
-        Faults {
-            deaths: deaths
-                .into_iter()
-                .map(|(id, tick)| Death {
-                    robot: robot(id),
-                    tick,
-                })
-                .collect(),
-            arrivals: arrivals
-                .into_iter()
-                .map(|(id, tick)| Arrival {
-                    robot: robot(id),
-                    tick,
-                })
-                .collect(),
-            restarts: restarts
-                .into_iter()
-                .map(|(id, tick)| Restart {
-                    robot: robot(id),
-                    tick,
-                })
-                .collect(),
-            ..Faults::default()
-        }
+fn faults(robots: u8) -> impl Strategy<Value = Faults> {
+    let fate = move || {
+        let event = (0..robots, 0u32..150).prop_map(Event::from);
+        proptest::collection::vec(event, 0..3)
+    };
+    (fate(), fate(), fate()).prop_map(|(deaths, arrivals, restarts)| Faults {
+        deaths,
+        arrivals,
+        restarts,
+        ..Faults::default()
     })
 }
 
 fn scenario() -> impl Strategy<Value = Scenario> {
     (
         (family(), 5u16..=28, 5u16..=28, any::<u64>()),
-        1usize..=6,
+        (1u8..=6).prop_flat_map(|robots| (Just(robots), faults(robots))),
         1u8..=8,
         (air(), 0.0..0.95f64),
-        faults(),
         proptest::sample::select(vec![0u16, 3, 20, 55, 110]),
         proptest::sample::select(vec![0u32, 1, 2, 7]),
     )
         .prop_map(
-            |((family, width, height, seed), robots, range, (air, loss), faults, budget, sync)| {
+            |(
+                (family, width, height, seed),
+                (robots, faults),
+                range,
+                (air, loss),
+                budget,
+                sync,
+            )| {
                 let world = Arc::new(generate(family, width, height, seed).unwrap());
-                let starts = world.place(robots, &Starts::Random(seed), false).unwrap();
+                let starts = world
+                    .place(robots.into(), &Starts::Random(seed), false)
+                    .unwrap();
                 let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
-                scenario.medium = MediumKind::Radio;
+                scenario.conditions.medium = MediumKind::Radio;
                 scenario.range = range;
-                scenario.seed = seed;
-                scenario.air = air;
-                scenario.loss = loss;
-                scenario.faults = faults;
-                scenario.byte_budget = budget;
-                scenario.sync = sync;
+                scenario.conditions.seed = seed;
+                scenario.conditions.air = air;
+                scenario.conditions.loss = loss;
+                scenario.conditions.faults = faults;
+                scenario.conditions.byte_budget = budget;
+                scenario.conditions.sync = sync;
                 scenario
             },
         )
@@ -151,7 +140,7 @@ fn without_loss_all_maps_agree_in_the_end() {
                 .place(robots as usize, &Starts::Center, false)
                 .unwrap();
             let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
-            scenario.medium = MediumKind::Radio;
+            scenario.conditions.medium = MediumKind::Radio;
             let outcome = outcome(&scenario);
             assert!(outcome.maps_agree(), "{family}, {robots} robots");
             for robot in &outcome.robots {

@@ -4,9 +4,14 @@
 #![no_main]
 
 use host_sim::draw;
-use host_sim::survey::octree::OcTree;
-use host_sim::survey::voxels::{self, Scene, VoxelTrace};
-use host_sim::survey::{self, Kill, Planner, Scenario, Summary, Terrain, Trace};
+use host_sim::scenario::Event;
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::voxels::Scenario as VoxelScenario;
+use host_sim::scene::Scene;
+use host_sim::scene::octree::OcTree;
+use host_sim::survey::voxels::{self, VoxelTrace};
+use host_sim::survey::{self, Summary, Trace};
+use host_sim::terrain::Terrain;
 use libfuzzer_sys::fuzz_target;
 use planner_core::surface::Height;
 use planner_core::volume::Voxel;
@@ -118,18 +123,16 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
     });
     let robots = usize::from(1 + from.byte() % 4);
     let mut scenario = Scenario::new(Planner::Fcao, robots, 0);
-    scenario.max_ticks = u32::from_le_bytes(from.array());
+    scenario.conditions.max_ticks = u32::from_le_bytes(from.array());
     if from.byte() & 1 == 1 {
         scenario.limits.range = from.length(12.0);
         scenario.limits.step = from.length(9.0);
         scenario.limits.min_altitude = from.length(9.0);
         scenario.limits.ceiling = from.length(99.0);
         scenario.limits.separation = from.length(2.0);
-        scenario.loss = from.length(1.0).into();
-        scenario.kills.push(Kill {
-            robot: from.byte().into(),
-            step: from.byte().into(),
-        });
+        scenario.conditions.loss = from.length(1.0).into();
+        let death = Event::from((from.byte(), from.byte().into()));
+        scenario.conditions.faults.deaths.push(death);
     }
     let point = |from: &mut Bytes<'_>| {
         let (x, y) = (from.length(width.into()), from.length(height.into()));
@@ -187,7 +190,7 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         z == 0 || (x * 5 + y * 3 + z * 11) % 13 < i16::from(solid) % 4
     });
     let robots = usize::from(1 + from.byte() % 3);
-    let mut scenario = voxels::Scenario::new(robots, 0);
+    let mut scenario = VoxelScenario::new(robots, 0);
     scenario.range = from.byte() % 16;
     let voxel = |from: &mut Bytes<'_>| {
         let [x, y, z] = from.array().map(|byte: u8| match byte {

@@ -20,7 +20,8 @@ use std::sync::Arc;
 
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Outcome, Scenario, run};
+use host_sim::run::{Options, Outcome, run};
+use host_sim::scenario::grid::Scenario;
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::cao::{Degree, Frame, Model, Sample};

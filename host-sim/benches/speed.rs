@@ -7,7 +7,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Scenario, run};
+use host_sim::run::{Options, run};
+use host_sim::scenario::grid::Scenario;
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, generate};
 
@@ -41,7 +42,7 @@ fn robot_ticks_per_second(planner: PlannerKind, family: Family) -> f64 {
         let starts = world.place(10, &Starts::Random(seed), false);
         let starts = starts.expect("robots may share a cell");
         let mut scenario = Scenario::new(world.clone(), starts, planner);
-        scenario.seed = seed;
+        scenario.conditions.seed = seed;
         let options = Options {
             sensor: Some(sensor.clone()),
             ..Options::default()

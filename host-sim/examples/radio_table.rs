@@ -7,9 +7,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Parser;
-use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, Outcome, Scenario, run};
+use host_sim::run::{Options, Outcome, run};
+use host_sim::scenario::MediumKind;
+use host_sim::scenario::grid::Scenario;
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, ReadOptions, Starts, World, generate};
 
@@ -127,9 +128,9 @@ fn compare(
     let ticks = |medium, loss| -> Result<Outcome, Box<dyn std::error::Error>> {
         let mut scenario = Scenario::new(world.clone(), starts.clone(), PlannerKind::Explorer);
         scenario.range = RANGE;
-        scenario.seed = seed;
-        scenario.medium = medium;
-        scenario.loss = loss;
+        scenario.conditions.seed = seed;
+        scenario.conditions.medium = medium;
+        scenario.conditions.loss = loss;
         let options = Options {
             sensor: Some(sensor.clone()),
             ..Options::default()

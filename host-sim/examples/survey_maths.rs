@@ -16,7 +16,9 @@ use std::rc::Rc;
 use bridge::SurveyorConfig;
 use clap::Parser;
 use host_sim::experiments::{Interval, mean};
-use host_sim::survey::{Here, Host, Planner, Scenario, Terrain, run, run_on};
+use host_sim::run::heights::{Here, Host, run, run_on};
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::terrain::Terrain;
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Point, RobotId};
 

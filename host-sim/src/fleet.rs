@@ -1,18 +1,13 @@
 //! Robots in a world, and the tick that moves them all.
 
-mod faults;
-
 use std::sync::Arc;
 
 use planner_core::tile::TileIndex;
 use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, role};
 
-pub use faults::{
-    Arrival, Blind, Closure, Death, FaultText, Faults, LostPose, Restart, Resume, SensorFailure,
-};
-
 use crate::medium::{Medium, Message};
 use crate::record::Reason;
+use crate::scenario::{Event, Faults};
 use crate::senses::Senses;
 use crate::sensor::Sensor;
 
@@ -170,7 +165,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         }
         let robot = |(&start, id)| {
             let id = RobotId(id);
-            let is_there = !rules.faults.arrivals.iter().any(|of| of.robot == id);
+            let is_there = !rules.faults.comes_late(id);
             Robot {
                 id,
                 planner: build(id, start),
@@ -228,11 +223,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
 
     /// Whether every living robot has stopped, and none is still to come or to go on.
     pub fn has_stopped(&self) -> bool {
-        let faults = &self.rules.faults;
-        let arrivals = faults.arrivals.iter().map(|arrival| arrival.tick);
-        let births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
-        let mut orders = births.chain(faults.resumes.iter().map(|resume| resume.tick));
-        orders.all(|tick| tick < self.tick)
+        !self.rules.faults.still_to_come(self.tick)
             && self.robots.iter().all(|robot| {
                 let stopped = |step: Step| matches!(step.deed, Deed::Stopped(_));
                 !robot.alive || robot.step.is_some_and(stopped)
@@ -287,16 +278,16 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     fn meet_fate(&mut self) {
         let faults = &self.rules.faults;
         for robot in &mut self.robots {
-            let now = |id: RobotId, tick: u32| id == robot.id && tick == self.tick;
-            if faults.deaths.iter().any(|of| now(of.robot, of.tick)) {
+            let now = |events: &[Event]| Faults::befalls(events, robot.id, self.tick);
+            if now(&faults.deaths) {
                 robot.alive = false;
                 robot.step = None;
             }
-            if faults.arrivals.iter().any(|of| now(of.robot, of.tick)) {
+            if now(&faults.arrivals) {
                 robot.alive = true;
                 robot.is_there = true;
             }
-            if faults.restarts.iter().any(|of| now(of.robot, of.tick)) && robot.is_there {
+            if now(&faults.restarts) && robot.is_there {
                 robot.alive = true;
                 robot.planner = (self.build)(robot.id, robot.position);
             }

@@ -3,7 +3,7 @@
 //! ```text
 //! scenario (world, robots, planner, seed) -> run -> trace -> picture | table
 //! ```
-//! A [`Scenario`](run::Scenario) holds everything that a run follows from;
+//! A [`Scenario`](scenario::grid::Scenario) holds everything that a run follows from;
 //! [`run::run`] gives its outcome and, if asked, the [`Trace`](trace::Trace)
 //! that everything else is drawn from.
 //!
@@ -29,9 +29,12 @@ pub mod peers;
 pub mod planners;
 pub mod record;
 pub mod run;
+pub mod scenario;
+pub mod scene;
 pub mod senses;
 pub mod sensor;
 pub mod summary;
 pub mod survey;
+pub mod terrain;
 pub mod trace;
 pub mod world;

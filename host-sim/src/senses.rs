@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use planner_core::{Cell, Direction, Sighting};
 
-use crate::fleet::Faults;
+use crate::scenario::Faults;
+use crate::scenario::grid::Scenario;
 use crate::sensor::{Sensor, View, only};
 
 /// Where the pose of a robot lies that has lost it: one column off the grid.
@@ -29,6 +30,11 @@ impl Senses {
             faults: faults.clone(),
             headings: vec![Direction::East; robots],
         }
+    }
+
+    /// Of the robots of a scenario; `sensor` is the scenario's.
+    pub fn of(scenario: &Scenario, sensor: Arc<Sensor>) -> Self {
+        Self::new(sensor, &scenario.conditions.faults, scenario.starts.len())
     }
 
     /// The sensor that all robots carry.
@@ -132,7 +138,7 @@ mod tests {
     use super::*;
     use planner_core::{Extent, RobotId};
 
-    use crate::fleet::{Blind, LostPose, SensorFailure};
+    use crate::scenario::{CellSpan, Event, RobotSpan};
     use crate::world::World;
 
     #[test]
@@ -142,16 +148,16 @@ mod tests {
         let (at, glass) = (Cell::new(4, 4), Cell::new(5, 4));
         let whole = sensor.view(at, Direction::East).sighting.clone();
         let faults = Faults {
-            blind: vec![Blind {
+            blind: vec![CellSpan {
                 cell: glass,
                 from: 2,
                 until: 4,
             }],
-            sensor_failures: vec![SensorFailure {
+            sensor_failures: vec![Event {
                 robot: RobotId(1),
                 tick: 6,
             }],
-            lost_poses: vec![LostPose {
+            lost_poses: vec![RobotSpan {
                 robot: RobotId(0),
                 from: 5,
                 until: 7,

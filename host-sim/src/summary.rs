@@ -4,9 +4,10 @@ use planner_core::radio::Hearsay;
 use serde::Serialize;
 
 use crate::measured::Measured;
-use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
-use crate::run::{Outcome, RobotOutcome, Scenario};
+use crate::run::{Outcome, RobotOutcome};
+use crate::scenario::grid::Scenario;
+use crate::scenario::{AirFaults, Conditions, MediumKind, Reach};
 
 /// What a run came to, in the field names of the JSON summary.
 #[derive(Clone, Debug, Serialize)]
@@ -124,13 +125,13 @@ impl Summary {
             planner: scenario.planner,
             range: scenario.range,
             fov: scenario.fov,
-            medium: scenario.medium,
-            sync: scenario.sync,
-            byte_budget: scenario.byte_budget,
-            loss: scenario.loss,
-            air: scenario.air.clone(),
-            keyed: scenario.key.is_some(),
-            seed: scenario.seed,
+            medium: scenario.conditions.medium,
+            sync: scenario.conditions.sync,
+            byte_budget: scenario.conditions.byte_budget,
+            loss: scenario.conditions.loss,
+            air: scenario.conditions.air.clone(),
+            keyed: scenario.conditions.key.is_some(),
+            seed: scenario.conditions.seed,
             solid: scenario.solid,
             robots: scenario
                 .starts
@@ -164,16 +165,18 @@ impl RobotSummary {
 }
 
 fn why_maps_differ(scenario: &Scenario, outcome: &Outcome) -> &'static str {
-    let Scenario { air, faults, .. } = scenario;
-    if scenario.sync == 0 || scenario.medium == MediumKind::Radio && scenario.byte_budget == 0 {
+    let Conditions { air, faults, .. } = &scenario.conditions;
+    if scenario.conditions.sync == 0
+        || scenario.conditions.medium == MediumKind::Radio && scenario.conditions.byte_budget == 0
+    {
         "the robots never spoke"
     } else if air.reach != Reach::Everywhere || !air.partitions.is_empty() {
         "robots were out of each other's reach when the last one stopped"
-    } else if scenario.loss > 0.0 || air.corruption > 0.0 {
+    } else if scenario.conditions.loss > 0.0 || air.corruption > 0.0 {
         "messages were lost, and had not been repeated when the last robot stopped"
     } else if outcome.ticks_to_stopped.is_none() {
         "the run ended before every robot had stopped"
-    } else if air.delay > 0 || scenario.sync > 1 {
+    } else if air.delay > 0 || scenario.conditions.sync > 1 {
         "the last messages were still to come when the last robot stopped"
     } else if !faults.deaths.is_empty() || !faults.restarts.is_empty() {
         "a robot had died, or had not been told everything again after its restart"

@@ -14,7 +14,7 @@ use planner_core::{Cell, Direction};
 
 use crate::fleet::{Deed, Robot, Sent, Step};
 use crate::record::{self, Reason};
-use crate::run::Scenario;
+use crate::scenario::grid::Scenario;
 
 /// A scenario and all that its robots did.
 #[derive(Clone, Debug)]

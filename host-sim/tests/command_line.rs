@@ -277,7 +277,7 @@ fn bad_options_are_named() {
         &["--fov", "90", "--planner", "minpos"],
         &["minpos never turns", "360", "90"],
     );
-    bad(&["--close", "99,1"], &["closed cell at 99,1", "12×5"]);
+    bad(&["--close", "99,1"], &["--close 99,1", "12×5"]);
     bad(&["--blind", "3"], &["--blind", "X,Y@FROM-UNTIL"]);
     bad(
         &["--pose-lost", "0@9-3"],

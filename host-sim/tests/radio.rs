@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use host_sim::experiments::ghosts::{Attack, one_robot, sensor, three_robots};
-use host_sim::fleet::{Arrival, Faults, Restart};
-use host_sim::medium::{Forger, Forgery, MediumKind, Reach};
 use host_sim::planners::PlannerKind;
-use host_sim::run::{Options, RobotOutcome, Scenario, run};
+use host_sim::run::{Options, RobotOutcome, run};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{Event, Faults};
+use host_sim::scenario::{Forger, Forgery, MediumKind, Reach};
 use host_sim::summary::Summary;
 use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, generate};
@@ -17,7 +18,7 @@ fn scenario(robots: usize) -> Scenario {
     let world = Arc::new(generate(Family::Rooms, 40, 40, 3).unwrap());
     let starts = world.place(robots, &Starts::Center, false).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
-    scenario.medium = MediumKind::Radio;
+    scenario.conditions.medium = MediumKind::Radio;
     scenario
 }
 
@@ -58,7 +59,7 @@ fn every_planner_explores_over_the_radio_and_hears_the_others() {
         scenario.planner = planner;
         let (together, _) = summary(&scenario);
         assert!(together.complete, "{planner}");
-        scenario.sync = 0;
+        scenario.conditions.sync = 0;
         let (alone, _) = summary(&scenario);
         assert_eq!(alone.robots[0].frames_sent, 0);
         let steps = |summary: &Summary| -> u32 { summary.robots.iter().map(|of| of.steps).sum() };
@@ -69,13 +70,13 @@ fn every_planner_explores_over_the_radio_and_hears_the_others() {
 #[test]
 fn the_budget_and_the_interval_limit_what_is_sent() {
     let mut scenario = scenario(2);
-    scenario.byte_budget = 10;
+    scenario.conditions.byte_budget = 10;
     let (summary_of_10, _) = summary(&scenario);
     for robot in &summary_of_10.robots {
         assert!(robot.frames_sent > 0 && robot.bytes_sent <= 10 * summary_of_10.ticks);
     }
-    scenario.byte_budget = 55;
-    scenario.sync = 4;
+    scenario.conditions.byte_budget = 55;
+    scenario.conditions.sync = 4;
     let (every_fourth, _) = summary(&scenario);
     let frames = every_fourth.ticks.div_ceil(4);
     assert!(
@@ -88,7 +89,7 @@ fn the_budget_and_the_interval_limit_what_is_sent() {
 
 #[test]
 fn the_summary_says_why_maps_differ() {
-    let late = Arrival {
+    let late = Event {
         robot: RobotId(1),
         tick: 59,
     };
@@ -97,28 +98,28 @@ fn the_summary_says_why_maps_differ() {
         // From one start, robots that hear nothing all walk the same way; and in
         // the end all know the whole world, whatever they were told.
         scenario.starts = scenario.world.free_cells().step_by(300).take(3).collect();
-        scenario.max_ticks = 60;
+        scenario.conditions.max_ticks = 60;
         change(&mut scenario);
         let (summary, _) = summary(&scenario);
         assert!(!summary.maps_agree);
         assert!(summary.robots.iter().any(|robot| robot.cells_unheard > 0));
         summary.maps_differ_because.unwrap()
     };
-    assert!(why(&|s| s.byte_budget = 0).contains("never spoke"));
-    assert!(why(&|s| s.air.reach = Reach::Cells(1)).contains("reach"));
-    assert!(why(&|s| s.loss = 1.0).contains("lost"));
-    assert!(why(&|s| s.faults.arrivals = vec![late]).contains("ended before"));
+    assert!(why(&|s| s.conditions.byte_budget = 0).contains("never spoke"));
+    assert!(why(&|s| s.conditions.air.reach = Reach::Cells(1)).contains("reach"));
+    assert!(why(&|s| s.conditions.loss = 1.0).contains("lost"));
+    assert!(why(&|s| s.conditions.faults.arrivals = vec![late]).contains("ended before"));
 }
 
 #[test]
 fn late_robots_and_restarted_ones_learn_by_radio_what_they_missed() {
     let mut scenario = scenario(3);
-    scenario.faults = Faults {
-        arrivals: vec![Arrival {
+    scenario.conditions.faults = Faults {
+        arrivals: vec![Event {
             robot: RobotId(2),
             tick: 120,
         }],
-        restarts: vec![Restart {
+        restarts: vec![Event {
             robot: RobotId(0),
             tick: 150,
         }],
@@ -154,10 +155,10 @@ fn forged() -> impl Iterator<Item = Scenario> {
         let starts = world.place(3, &Starts::Random(5), false).unwrap();
         [None, Some(Key([9; 16]))].map(|key| {
             let mut scenario = Scenario::new(world.clone(), starts.clone(), PlannerKind::Explorer);
-            scenario.medium = MediumKind::Radio;
-            scenario.loss = 0.2;
-            scenario.key = key;
-            scenario.air.forger = Some(Forger { frames: 3, kind });
+            scenario.conditions.medium = MediumKind::Radio;
+            scenario.conditions.loss = 0.2;
+            scenario.conditions.key = key;
+            scenario.conditions.air.forger = Some(Forger { frames: 3, kind });
             scenario
         })
     })
@@ -173,18 +174,18 @@ fn digest(scenario: &Scenario) -> String {
 
 #[test]
 fn a_forger_without_the_key_changes_nothing() {
-    for mut scenario in forged().filter(|scenario| scenario.key.is_some()) {
+    for mut scenario in forged().filter(|scenario| scenario.conditions.key.is_some()) {
         let among_forgers = digest(&scenario);
-        let forger = scenario.air.forger.take();
+        let forger = scenario.conditions.air.forger.take();
         assert_eq!(digest(&scenario), among_forgers, "{forger:?}");
     }
 }
 
 #[test]
 fn without_a_key_every_robot_stops_and_hints_leave_nothing_out() {
-    for scenario in forged().filter(|scenario| scenario.key.is_none()) {
+    for scenario in forged().filter(|scenario| scenario.conditions.key.is_none()) {
         let outcome = run(&scenario, Options::default()).unwrap().0;
-        let forger = scenario.air.forger.unwrap();
+        let forger = scenario.conditions.air.forger.unwrap();
         assert!(outcome.violations.is_empty());
         assert!(
             outcome.robots.iter().all(|robot| robot.stop.is_some()),

@@ -4,9 +4,12 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use host_sim::draw;
-use host_sim::fleet::{Blind, Closure, Death, Deed, Faults, LostPose, Resume, SensorFailure};
+use host_sim::fleet::Deed;
 use host_sim::planners::{PlannerKind, Setup};
-use host_sim::run::{self, Host, Options, Outcome, Scenario, ScenarioError, run_compiled};
+use host_sim::run::{self, Host, Options, Outcome, run_compiled};
+use host_sim::scenario::ScenarioError;
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{CellSpan, Event, Faults, RobotSpan};
 use host_sim::sensor::Sensor;
 use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, World, generate};
@@ -19,8 +22,8 @@ fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
     let world = Arc::new(generate(family, 31, 24, seed).unwrap());
     let starts = world.place(4, &Starts::Random(seed), false).unwrap();
     let mut scenario = Scenario::new(world, starts, planner);
-    scenario.seed = seed;
-    scenario.loss = 0.25;
+    scenario.conditions.seed = seed;
+    scenario.conditions.loss = 0.25;
     scenario
 }
 
@@ -61,7 +64,7 @@ fn the_same_scenario_gives_the_same_trace_with_any_sensor_and_any_size() {
 fn another_seed_gives_another_trace() {
     let mut scenario = scenario(PlannerKind::Closest, Family::Rooms, 5);
     let (_, one) = run(&scenario);
-    scenario.seed += 1;
+    scenario.conditions.seed += 1;
     let (_, other) = run(&scenario);
     assert_ne!(one.digest(), other.digest());
 }
@@ -100,7 +103,7 @@ fn coverage_never_falls_and_ends_with_what_was_seen() {
 fn a_dead_robot_leaves_no_more_records_and_the_others_finish() {
     let mut scenario = scenario(PlannerKind::Explorer, Family::Rooms, 4);
     let robot = RobotId(2);
-    scenario.faults.deaths = vec![Death { robot, tick: 20 }];
+    scenario.conditions.faults.deaths = vec![Event { robot, tick: 20 }];
     let (outcome, trace) = run(&scenario);
     let last = trace.records.iter().rev().find(|record| record.robot == 2);
     assert_eq!(last.unwrap().tick, 19);
@@ -118,8 +121,8 @@ fn a_closed_cell_blocks_until_it_opens() {
     let start = Cell::new(2, 1);
     let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
     scenario.range = 2;
-    scenario.faults = Faults {
-        closures: vec![Closure {
+    scenario.conditions.faults = Faults {
+        closures: vec![CellSpan {
             cell,
             from: 0,
             until: 30,
@@ -140,13 +143,13 @@ fn solid_robots_never_share_a_cell_and_finish_in_a_maze() {
     let starts = world.place(8, &Starts::Corner, true).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
     scenario.solid = true;
-    scenario.loss = 0.5;
+    scenario.conditions.loss = 0.5;
     let sensor = Arc::new(Sensor::new(scenario.world.clone(), scenario.range));
     let mut fleet = run::fleet::<4, 4>(&scenario, sensor);
     let mut exchanges = 0;
     while !fleet.has_stopped() {
         fleet.tick();
-        assert!(fleet.ticks() < scenario.max_ticks, "a deadlock");
+        assert!(fleet.ticks() < scenario.conditions.max_ticks, "a deadlock");
         let mut at: Vec<Cell> = fleet.robots().iter().map(|robot| robot.position).collect();
         at.sort_unstable();
         assert!(at.windows(2).all(|pair| pair[0] != pair[1]));
@@ -259,7 +262,7 @@ fn robots_that_turn_see_everything_with_any_field_of_view() {
     for (fov, family) in [1, 62, 90, 180, 360].into_iter().zip(Family::ALL) {
         let mut scenario = scenario(PlannerKind::Explorer, family, 6);
         scenario.fov = fov;
-        scenario.max_ticks *= 5;
+        scenario.conditions.max_ticks *= 5;
         let (outcome, trace) = run::run_on(&LookingAround, &scenario, traced()).unwrap();
         let trace = trace.unwrap();
         assert!(outcome.is_complete(), "{fov} degrees in {family}");
@@ -286,7 +289,7 @@ fn nothing_is_seen_beside_a_narrow_field_of_view() {
     let world = World::from_fn("open", planner_core::Extent::new(20, 9), |_| false);
     let start = Cell::new(4, 4);
     let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
-    (scenario.fov, scenario.range, scenario.max_ticks) = (62, 3, 1);
+    (scenario.fov, scenario.range, scenario.conditions.max_ticks) = (62, 3, 1);
     let mut running = run::open(&scenario, None).unwrap();
     running.tick();
     // To the east, five cells and the own one; then it turns to what it has not seen.
@@ -303,9 +306,9 @@ fn a_robot_without_a_pose_learns_nothing_and_goes_on_afterwards() {
             continue;
         }
         let mut scenario = scenario(planner, Family::Rooms, 4);
-        scenario.sync = 0;
-        scenario.faults.lost_poses = (0..4)
-            .map(|robot| LostPose {
+        scenario.conditions.sync = 0;
+        scenario.conditions.faults.lost_poses = (0..4)
+            .map(|robot| RobotSpan {
                 robot: RobotId(robot),
                 from: 3,
                 until: 20,
@@ -336,13 +339,13 @@ fn what_no_look_shows_counts_as_unseen() {
     });
     let start = Cell::new(2, 1);
     let mut scenario = Scenario::new(Arc::new(world.unwrap()), vec![start], PlannerKind::Explorer);
-    scenario.max_ticks = 300;
+    scenario.conditions.max_ticks = 300;
     let mut outcome = |faults: Faults| {
-        scenario.faults = faults;
+        scenario.conditions.faults = faults;
         run(&scenario).0
     };
     let glass = |cell| Faults {
-        blind: vec![Blind {
+        blind: vec![CellSpan {
             cell,
             from: 0,
             until: u32::MAX,
@@ -353,7 +356,7 @@ fn what_no_look_shows_counts_as_unseen() {
     let wall = outcome(glass(Cell::new(5, 0)));
     assert_eq!((wall.seen_cells, wall.ticks_to_seen.is_some()), (10, true));
     let silent = outcome(Faults {
-        sensor_failures: vec![SensorFailure {
+        sensor_failures: vec![Event {
             robot: RobotId(0),
             tick: 0,
         }],
@@ -368,7 +371,7 @@ fn a_run_goes_on_when_a_robot_is_told_to_and_ends_anew() {
     let mut scenario = scenario(PlannerKind::Closest, Family::Rooms, 9);
     let (before, trace) = run(&scenario);
     let end = before.ticks;
-    scenario.faults.resumes = vec![Resume {
+    scenario.conditions.faults.resumes = vec![Event {
         robot: RobotId(1),
         tick: end + 5,
     }];
@@ -386,16 +389,22 @@ fn a_scenario_out_of_range_is_an_error() {
         change(&mut scenario);
         run::run(&scenario, Options::default()).unwrap_err()
     };
-    assert_eq!(check(&|s| s.range = 16), ScenarioError::Range(16));
-    assert_eq!(
-        check(&|s| s.loss = 1.5),
-        ScenarioError::Share {
-            name: "loss",
-            share: 1.5
-        }
+    let says = |change: &dyn Fn(&mut Scenario), words: &str| {
+        let error = check(change).to_string();
+        assert!(error.starts_with(words), "{error}");
+    };
+    says(&|s| s.range = 16, "--range 16: expected 1 to 15");
+    says(&|s| s.conditions.loss = 1.5, "--loss 1.5: expected a share");
+    says(&|s| s.starts.clear(), "--robots 0: expected 1 to 255");
+    says(&|s| s.fov = 361, "--fov 361: expected 1 to 360");
+    // What only frames have, by name.
+    says(
+        &|s| s.conditions.air.delay = 1,
+        "--delay only works on frames",
     );
-    assert_eq!(check(&|s| s.starts.clear()), ScenarioError::Robots(0));
-    assert_eq!(check(&|s| s.fov = 361), ScenarioError::Fov(361));
+    let nobody = Event::from((4, 9));
+    let kill = |s: &mut Scenario| s.conditions.faults.deaths.push(nobody);
+    says(&kill, "--kill: there is no robot 4");
     let error = check(&|s| s.fov = 180);
     assert_eq!(
         error,

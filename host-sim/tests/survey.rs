@@ -1,9 +1,15 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
-use host_sim::medium::MediumKind;
 use host_sim::record::Reason;
-use host_sim::survey::octree::OcTree;
-use host_sim::survey::{Deed, Kill, Planner, Scenario, Terrain, look, octree, run, voxels};
+use host_sim::run::heights::run;
+use host_sim::run::voxels;
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::voxels::Scenario as VoxelScenario;
+use host_sim::scenario::{Event, MediumKind};
+use host_sim::scene::Scene;
+use host_sim::scene::octree::OcTree;
+use host_sim::survey::{Deed, octree};
+use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
 use planner_core::{Cell, Direction, Extent, Point};
 use proptest::prelude::*;
@@ -49,13 +55,11 @@ fn frames_carry_what_robots_need() {
     for planner in OWN {
         let ticks = |medium| {
             let ticks = (0..6).map(|seed| {
-                let scenario = Scenario {
-                    medium,
-                    ..Scenario::new(planner, 6, seed)
-                };
+                let mut scenario = Scenario::new(planner, 6, seed);
+                scenario.conditions.medium = medium;
                 let trace = run(&Terrain::gaussian(seed, 60), &scenario).unwrap();
                 for record in &trace.records {
-                    assert!(record.sent.bytes <= u32::from(scenario.byte_budget));
+                    assert!(record.sent.bytes <= u32::from(scenario.conditions.byte_budget));
                     assert!(record.sent.bytes <= 55 * record.sent.frames);
                 }
                 trace.ticks_to(1.0).unwrap()
@@ -82,20 +86,17 @@ fn faults_slow_a_survey_but_do_not_stop_it() {
         ] {
             let terrain = Terrain::gaussian(seed, 40);
             let mut scenario = Scenario::new(planner, 4, seed);
-            scenario.medium = MediumKind::Radio;
-            (scenario.loss, scenario.skip) = (loss, skip);
-            scenario.kills = (0..killed)
-                .map(|robot| Kill {
-                    robot,
-                    step: 5 + 7 * robot as u32,
-                })
+            scenario.conditions.medium = MediumKind::Radio;
+            (scenario.conditions.loss, scenario.skip) = (loss, skip);
+            scenario.conditions.faults.deaths = (0..killed)
+                .map(|robot| Event::from((robot, 5 + 7 * u32::from(robot))))
                 .collect();
             let trace = run(&terrain, &scenario).unwrap();
             assert!(
                 trace.complete(),
                 "{planner:?} loss {loss} skip {skip} killed {killed}"
             );
-            for robot in killed as u8..4 {
+            for robot in killed..4 {
                 let last = trace.of(robot.into()).last().unwrap();
                 assert_eq!(last.deed, Deed::Stopped(Reason::Complete));
             }
@@ -109,12 +110,12 @@ fn the_same_seed_is_the_same_run() {
     let terrain = Terrain::gaussian(7, 40);
     for planner in ALL {
         let mut scenario = Scenario::new(planner, 4, 7);
-        scenario.medium = MediumKind::Radio;
-        (scenario.loss, scenario.skip) = (0.2, 0.1);
+        scenario.conditions.medium = MediumKind::Radio;
+        (scenario.conditions.loss, scenario.skip) = (0.2, 0.1);
         let digest = |scenario: &Scenario| run(&terrain, scenario).unwrap().digest();
         let first = digest(&scenario);
         assert_eq!(first, digest(&scenario));
-        scenario.seed = 8;
+        scenario.conditions.seed = 8;
         assert_ne!(first, digest(&scenario));
     }
 }
@@ -161,12 +162,10 @@ fn octomap_reads_any_tree() {
 fn a_town_of_voxels_is_mapped_as_octomap_reads_it() {
     use MediumKind::{Ideal, Radio};
     for (seed, medium, loss) in [(1, Ideal, 0.0), (2, Ideal, 0.5), (2, Radio, 0.5)] {
-        let scenario = voxels::Scenario {
-            medium,
-            loss,
-            ..voxels::Scenario::new(2, seed)
-        };
-        let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+        let mut scenario = VoxelScenario::new(2, seed);
+        scenario.conditions.medium = medium;
+        scenario.conditions.loss = loss;
+        let trace = voxels::run(&Scene::town(seed, 28), &scenario).unwrap();
         assert!(trace.complete() && trace.all_stopped);
         assert_eq!(
             trace.digest(),
@@ -182,15 +181,13 @@ fn a_town_of_voxels_is_mapped_as_octomap_reads_it() {
 fn frames_carry_voxels() {
     let ticks = |medium| {
         let ticks = (1..4).map(|seed| {
-            let scenario = voxels::Scenario {
-                medium,
-                ..voxels::Scenario::new(3, seed)
-            };
-            let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+            let mut scenario = VoxelScenario::new(3, seed);
+            scenario.conditions.medium = medium;
+            let trace = voxels::run(&Scene::town(seed, 28), &scenario).unwrap();
             assert!(trace.complete() && trace.all_stopped);
             let sent = || trace.records.iter().map(|record| record.sent);
             for sent in sent() {
-                assert!(sent.bytes <= u32::from(scenario.byte_budget));
+                assert!(sent.bytes <= u32::from(scenario.conditions.byte_budget));
                 assert!(sent.bytes <= 55 * sent.frames);
             }
             assert_eq!(
@@ -211,11 +208,9 @@ fn frames_carry_voxels() {
 fn voxels_are_shared_out() {
     let ticks = |robots| {
         let ticks = (1..4).map(|seed| {
-            let scenario = voxels::Scenario {
-                medium: MediumKind::Radio,
-                ..voxels::Scenario::new(robots, seed)
-            };
-            let trace = voxels::run(&voxels::Scene::town(seed, 28), &scenario).unwrap();
+            let mut scenario = VoxelScenario::new(robots, seed);
+            scenario.conditions.medium = MediumKind::Radio;
+            let trace = voxels::run(&Scene::town(seed, 28), &scenario).unwrap();
             trace.ticks_to(1.0).unwrap()
         });
         ticks.sum::<u32>()
@@ -332,18 +327,16 @@ proptest! {
         byte_budget in prop::sample::select(&[0u16, 20, 55, 275][..]),
         seed in 0u64..1000,
     ) {
-        let scene = voxels::Scene::from_fn("slabs", Extent::new(14, 13), 8, |v| {
+        let scene = Scene::from_fn("slabs", Extent::new(14, 13), 8, |v| {
             slabs.iter().any(|&((x, y, z), (wide, deep, high))| {
                 (x..x + wide).contains(&v.x) && (y..y + deep).contains(&v.y) && (z..z + high).contains(&v.z)
             })
         });
-        let scenario = voxels::Scenario {
-            range: 4,
-            medium: MediumKind::Radio,
-            byte_budget,
-            loss,
-            ..voxels::Scenario::new(robots, seed)
-        };
+        let mut scenario = VoxelScenario::new(robots, seed);
+        scenario.range = 4;
+        scenario.conditions.medium = MediumKind::Radio;
+        scenario.conditions.byte_budget = byte_budget;
+        scenario.conditions.loss = loss;
         // Without room for a robot there is no run.
         if let Ok(trace) = voxels::run(&scene, &scenario) {
             prop_assert!(trace.complete(), "{} of {}", trace.seen.last().unwrap(), trace.visible);

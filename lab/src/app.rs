@@ -1,7 +1,7 @@
 //! The lab: what is set, what runs, and what is shown.
 
-use host_sim::fleet::{Arrival, Death, Faults, Resume};
 use host_sim::planners::PlannerKind;
+use host_sim::scenario::{Conditions, Event, Faults};
 use host_sim::trace::Trace;
 use host_sim::world::Starts;
 use planner_core::{Cell, RobotId};
@@ -226,7 +226,10 @@ impl App {
                 self.set(Setup {
                     map,
                     starts: (!starts.is_empty()).then_some(Starts::At(starts)),
-                    faults: Faults::default(),
+                    conditions: Conditions {
+                        faults: Faults::default(),
+                        ..self.setup.conditions.clone()
+                    },
                     ..self.setup.clone()
                 });
             }
@@ -450,7 +453,7 @@ impl App {
         };
         if tick > 0 {
             let robot = RobotId(robots - 1);
-            setup.faults.arrivals.push(Arrival { robot, tick });
+            setup.conditions.faults.arrivals.push(Event { robot, tick });
         }
         self.set_at(setup, (tick > 0).then_some(tick));
     }
@@ -460,9 +463,9 @@ impl App {
         let tick = self.shown_tick();
         let Ok(id) = u8::try_from(robot) else { return };
         let mut setup = self.setup.clone();
-        let deaths = &mut setup.faults.deaths;
+        let deaths = &mut setup.conditions.faults.deaths;
         deaths.retain(|death| death.robot.0 != id);
-        deaths.push(Death {
+        deaths.push(Event {
             robot: RobotId(id),
             tick,
         });
@@ -474,12 +477,12 @@ impl App {
         let tick = self.shown_tick();
         let mut setup = self.setup.clone();
         let is_meant = |id: u8| robot.is_none_or(|robot| usize::from(id) == robot);
-        let resumes = &mut setup.faults.resumes;
+        let resumes = &mut setup.conditions.faults.resumes;
         resumes.retain(|of| of.tick < tick || !is_meant(of.robot.0));
         resumes.extend(
             (0..setup.robots)
                 .filter(|&id| is_meant(id))
-                .map(|id| Resume {
+                .map(|id| Event {
                     robot: RobotId(id),
                     tick,
                 }),
@@ -588,7 +591,7 @@ mod tests {
         assert_eq!(app.report().state, "complete");
         assert_ne!(app.report().digest, digest);
         app.go_on(None);
-        let resumes = &app.setup.faults.resumes;
+        let resumes = &app.setup.conditions.faults.resumes;
         assert_eq!(resumes.len(), 3, "{resumes:?}");
     }
 
@@ -603,7 +606,7 @@ mod tests {
         let bytes = crate::export::trace(&app.runs[0].watch.trace()).unwrap();
         let mut other = App::new(Setup::default());
         other.open("trace.csv", &bytes);
-        assert_eq!(other.setup.faults, app.setup.faults);
+        assert_eq!(other.setup.conditions.faults, app.setup.conditions.faults);
         other.show(50);
         app.show(50);
         assert_eq!(

@@ -4,14 +4,12 @@
 use std::fmt::Write;
 use std::sync::Arc;
 
-use host_sim::fleet::Faults;
-use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
-use host_sim::run::Scenario;
+use host_sim::scenario::grid::{Scenario, default_max_ticks};
+use host_sim::scenario::{Conditions, MediumKind};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::world::{Starts, World};
 use planner_core::Cell;
-use planner_core::radio::MAX_LEN;
 
 use crate::maps::Map;
 
@@ -30,24 +28,10 @@ pub struct Setup {
     pub range: u8,
     /// Its field of view in degrees.
     pub fov: u16,
-    /// What carries what robots tell each other.
-    pub medium: MediumKind,
-    /// Ticks between two exchanges; 0: never.
-    pub sync: u32,
-    /// Share of messages lost.
-    pub loss: f64,
-    /// Who hears whom.
-    pub reach: Reach,
-    /// Frames come so many ticks late at most.
-    pub delay: u32,
-    /// Bytes that a robot may send in a tick on average.
-    pub byte_budget: u16,
-    /// Seed of all chance in the run.
-    pub seed: u64,
     /// A cell holds at most one robot.
     pub solid: bool,
-    /// What happens to robots and cells.
-    pub faults: Faults,
+    /// What all worlds share. No `max_ticks`, 0: as many as the map needs.
+    pub conditions: Conditions,
 }
 
 impl Default for Setup {
@@ -59,15 +43,11 @@ impl Default for Setup {
             starts: None,
             range: 5,
             fov: ALL_AROUND,
-            medium: MediumKind::Radio,
-            sync: 1,
-            loss: 0.0,
-            reach: Reach::Everywhere,
-            delay: 0,
-            byte_budget: MAX_LEN as u16,
-            seed: 1,
             solid: false,
-            faults: Faults::default(),
+            conditions: Conditions {
+                medium: MediumKind::Radio,
+                ..Conditions::new(1, 0)
+            },
         }
     }
 }
@@ -89,21 +69,24 @@ impl Setup {
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.fov = self.fov;
-        scenario.medium = self.medium;
-        scenario.sync = self.sync;
-        scenario.loss = self.loss;
-        scenario.air.reach = self.reach;
-        scenario.air.delay = self.delay;
-        scenario.byte_budget = self.byte_budget;
-        scenario.seed = self.seed;
         scenario.solid = self.solid;
-        scenario.faults.clone_from(&self.faults);
+        let max_ticks = match self.conditions.max_ticks {
+            0 => scenario.conditions.max_ticks,
+            given => given,
+        };
+        scenario.conditions = Conditions {
+            max_ticks,
+            ..self.conditions.clone()
+        };
         scenario.check().map_err(|error| error.to_string())?;
         Ok(scenario)
     }
 
     /// The setup that gives this scenario, as far as the menus reach.
     pub fn of(scenario: &Scenario) -> Self {
+        let max_ticks = scenario.conditions.max_ticks;
+        let reachable = scenario.world.reachable(&scenario.starts);
+        let is_usual = max_ticks == default_max_ticks(&reachable, scenario.planner);
         Self {
             map: Map::Given(scenario.world.clone()),
             planner: scenario.planner,
@@ -111,15 +94,11 @@ impl Setup {
             starts: Some(Starts::At(scenario.starts.clone())),
             range: scenario.range,
             fov: scenario.fov,
-            medium: scenario.medium,
-            sync: scenario.sync,
-            loss: scenario.loss,
-            reach: scenario.air.reach,
-            delay: scenario.air.delay,
-            byte_budget: scenario.byte_budget,
-            seed: scenario.seed,
             solid: scenario.solid,
-            faults: scenario.faults.clone(),
+            conditions: Conditions {
+                max_ticks: if is_usual { 0 } else { max_ticks },
+                ..scenario.conditions.clone()
+            },
         }
     }
 
@@ -155,29 +134,8 @@ impl Setup {
         }
         say(self.range != usual.range, "range", self.range.to_string());
         say(self.fov != usual.fov, "fov", self.fov.to_string());
-        say(
-            self.medium != usual.medium,
-            "medium",
-            self.medium.to_string(),
-        );
-        say(self.sync != usual.sync, "sync", self.sync.to_string());
-        say(self.loss != usual.loss, "loss", self.loss.to_string());
-        let reach = match self.reach {
-            Reach::Everywhere => "all".into(),
-            Reach::LineOfSight => "sight".into(),
-            Reach::Cells(cells) => cells.to_string(),
-        };
-        say(self.reach != usual.reach, "radio-range", reach);
-        say(self.delay != usual.delay, "delay", self.delay.to_string());
-        let budget = self.byte_budget;
-        say(
-            budget != usual.byte_budget,
-            "byte-budget",
-            budget.to_string(),
-        );
-        say(self.seed != usual.seed, "seed", self.seed.to_string());
         say(self.solid, "solid", String::new());
-        settings.extend(fault_settings(&self.faults));
+        settings.extend(self.conditions.settings(&usual.conditions));
         settings
     }
 
@@ -261,28 +219,12 @@ impl Setup {
                 },
                 "range" => setup.range = value.parse().map_err(|_| wrong())?,
                 "fov" => setup.fov = value.parse().map_err(|_| wrong())?,
-                "medium" => {
-                    use clap::ValueEnum;
-                    setup.medium = MediumKind::from_str(value, true).map_err(|_| wrong())?;
-                }
-                "sync" => setup.sync = value.parse().map_err(|_| wrong())?,
-                "loss" => setup.loss = value.parse().map_err(|_| wrong())?,
-                "radio-range" => {
-                    setup.reach = match value {
-                        "all" => Reach::Everywhere,
-                        "sight" => Reach::LineOfSight,
-                        _ => Reach::Cells(value.parse().map_err(|_| wrong())?),
-                    }
-                }
-                "delay" => setup.delay = value.parse().map_err(|_| wrong())?,
-                "byte-budget" => setup.byte_budget = value.parse().map_err(|_| wrong())?,
-                "seed" => setup.seed = value.parse().map_err(|_| wrong())?,
                 "solid" => setup.solid = true,
-                _ => add_fault(&mut setup.faults, name, value).ok_or_else(wrong)?,
+                _ => setup.conditions.set(name, value).ok_or_else(wrong)?,
             }
         }
         if seeded {
-            setup.starts = Some(Starts::Random(setup.seed));
+            setup.starts = Some(Starts::Random(setup.conditions.seed));
         }
         if !starts.is_empty() {
             setup.starts = Some(Starts::At(starts));
@@ -326,44 +268,10 @@ fn cell(text: &str) -> Option<Cell> {
     Some(Cell::new(x.parse().ok()?, y.parse().ok()?))
 }
 
-/// The faults under the names that `host-sim explore` has for them.
-fn fault_settings(faults: &Faults) -> Vec<(&'static str, String)> {
-    fn all<T: ToString>(
-        name: &'static str,
-        faults: &[T],
-    ) -> impl Iterator<Item = (&'static str, String)> {
-        faults.iter().map(move |of| (name, of.to_string()))
-    }
-    all("kill", &faults.deaths)
-        .chain(all("late", &faults.arrivals))
-        .chain(all("restart", &faults.restarts))
-        .chain(all("resume", &faults.resumes))
-        .chain(all("close", &faults.closures))
-        .chain(all("blind", &faults.blind))
-        .chain(all("sensor-fails", &faults.sensor_failures))
-        .chain(all("pose-lost", &faults.lost_poses))
-        .collect()
-}
-
-/// Adds one of [`fault_settings`]; `None`: it is not understood.
-fn add_fault(faults: &mut Faults, name: &str, value: &str) -> Option<()> {
-    match name {
-        "kill" => faults.deaths.push(value.parse().ok()?),
-        "late" => faults.arrivals.push(value.parse().ok()?),
-        "restart" => faults.restarts.push(value.parse().ok()?),
-        "resume" => faults.resumes.push(value.parse().ok()?),
-        "close" => faults.closures.push(value.parse().ok()?),
-        "blind" => faults.blind.push(value.parse().ok()?),
-        "sensor-fails" => faults.sensor_failures.push(value.parse().ok()?),
-        "pose-lost" => faults.lost_poses.push(value.parse().ok()?),
-        _ => return None,
-    }
-    Some(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use host_sim::scenario::{AirFaults, Faults, Reach};
     use planner_core::Extent;
 
     fn unusual() -> Setup {
@@ -378,23 +286,33 @@ mod tests {
             starts: Some(Starts::Corner),
             range: 6,
             fov: ALL_AROUND,
-            medium: MediumKind::Ideal,
-            sync: 3,
-            loss: 0.25,
-            reach: Reach::Cells(9),
-            delay: 2,
-            byte_budget: 30,
-            seed: 5,
             solid: true,
-            faults: Faults {
-                deaths: vec!["1@40".parse().unwrap()],
-                arrivals: vec!["3@12".parse().unwrap()],
-                restarts: vec!["0@60".parse().unwrap()],
-                resumes: vec!["2@90".parse().unwrap()],
-                closures: vec!["4,5@9-20".parse().unwrap()],
-                blind: vec!["6,7".parse().unwrap()],
-                sensor_failures: vec!["1@30".parse().unwrap()],
-                lost_poses: vec!["0@5-9".parse().unwrap()],
+            conditions: Conditions {
+                medium: MediumKind::Radio,
+                sync: 3,
+                byte_budget: 30,
+                loss: 0.25,
+                air: AirFaults {
+                    reach: Reach::Cells(9),
+                    partitions: vec!["5-20:2".parse().unwrap()],
+                    duplication: 0.5,
+                    delay: 2,
+                    corruption: 0.125,
+                    forger: Some("2:goal".parse().unwrap()),
+                },
+                key: None,
+                seed: 5,
+                max_ticks: 900,
+                faults: Faults {
+                    deaths: vec!["1@40".parse().unwrap()],
+                    arrivals: vec!["3@12".parse().unwrap()],
+                    restarts: vec!["0@60".parse().unwrap()],
+                    resumes: vec!["2@90".parse().unwrap()],
+                    closures: vec!["4,5@9-20".parse().unwrap()],
+                    blind: vec!["6,7".parse().unwrap()],
+                    sensor_failures: vec!["1@30".parse().unwrap()],
+                    lost_poses: vec!["0@5-9".parse().unwrap()],
+                },
             },
         }
     }
@@ -429,6 +347,7 @@ mod tests {
             ("colour=red", "colour=red"),
             ("fov=wide", "fov=wide"),
             ("blind=3", "blind=3"),
+            ("key=00", "key=00"),
         ] {
             let error = Setup::from_address(address).unwrap_err();
             assert!(error.contains(part), "{error}");
@@ -446,10 +365,11 @@ mod tests {
             "cargo run --release -- generate rooms --size 40x30 --seed 7 --output rooms-7.txt\n"
         ));
         assert!(command.ends_with(
-            "explore rooms-7.txt --planner minpos --robots 4 --start corner --range 6 \
-             --medium ideal --sync 3 --loss 0.25 --radio-range 9 --delay 2 --byte-budget 30 --seed 5 \
-             --solid --kill 1@40 --late 3@12 --restart 0@60 --resume 2@90 --close 4,5@9-20 \
-             --blind 6,7 --sensor-fails 1@30 --pose-lost 0@5-9"
+            "explore rooms-7.txt --planner minpos --robots 4 --start corner --range 6 --solid \
+             --sync 3 --byte-budget 30 --loss 0.25 --radio-range 9 --duplicate 0.5 --delay 2 \
+             --corrupt 0.125 --seed 5 --max-ticks 900 --forge 2:goal --partition 5-20:2 \
+             --kill 1@40 --late 3@12 --restart 0@60 --resume 2@90 --close 4,5@9-20 --blind 6,7 \
+             --sensor-fails 1@30 --pose-lost 0@5-9"
         ));
     }
 }

@@ -275,7 +275,8 @@ impl SurveyScene {
 
 #[cfg(test)]
 mod tests {
-    use host_sim::survey::{self, TerrainSource, voxels};
+    use host_sim::run::{heights, voxels};
+    use host_sim::terrain::TerrainSource;
 
     use super::setup::tests::{town, unusual};
     use super::*;
@@ -305,7 +306,7 @@ mod tests {
                     .digest(),
                 None => {
                     let terrain = setup.terrain.load(setup.size).unwrap();
-                    survey::run(&terrain, &setup.scenario()).unwrap().digest()
+                    heights::run(&terrain, &setup.scenario()).unwrap().digest()
                 }
             };
             assert_eq!(scene.digest(), Some(&*digest));

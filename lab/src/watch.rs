@@ -4,7 +4,9 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use host_sim::run::{self, Outcome, Scenario, Stepping};
+use host_sim::run::{self, Outcome, Stepping};
+
+use host_sim::scenario::grid::Scenario;
 use host_sim::senses::Senses;
 use host_sim::sensor::Sensor;
 use host_sim::trace::{Record, Trace};
@@ -120,7 +122,7 @@ impl Watch {
                 visited_since: vec![NEVER; cells],
                 ..History::default()
             },
-            senses: scenario.senses(sensor.clone()),
+            senses: Senses::of(&scenario, sensor.clone()),
             scenario,
             sensor,
             source,

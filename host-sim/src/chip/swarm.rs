@@ -15,8 +15,7 @@ use super::proxy::Proxy;
 use super::surveyor::SurveyProxy;
 use crate::measured::{Call, Measured};
 use crate::planners::{PlannerKind, Setup};
-use crate::run::Host;
-use crate::survey;
+use crate::run::{Host, heights};
 
 /// Many times what the longest answer takes on a busy machine.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -104,7 +103,7 @@ impl Host for Swarm {
     }
 }
 
-impl survey::Host for Swarm {
+impl heights::Host for Swarm {
     fn surveyor<const T: usize>(
         &self,
         extent: Extent,

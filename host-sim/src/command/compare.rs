@@ -11,13 +11,12 @@ use host_sim::experiments::{
     Journal, Key, Metric, Place, Plan, Row, Shard, Site, compare, comparisons_csv, execute,
     markdown, to_csv,
 };
-use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
+use host_sim::scenario::{MediumKind, parse_share};
 use host_sim::world::{Family, ReadOptions, Recipe, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Extent;
 
-use super::explore::parse_share;
 use super::folder::Folder;
 use super::generate::parse_size;
 use super::{Done, tell_notes};

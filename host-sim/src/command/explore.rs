@@ -1,7 +1,6 @@
 //! `host-sim explore`.
 
 use std::error::Error;
-use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -10,20 +9,21 @@ use std::sync::Arc;
 use clap::Args;
 use host_sim::draw::{self, Coverage};
 use host_sim::measured::Measured;
-use host_sim::medium::MediumKind;
 use host_sim::planners::PlannerKind;
-use host_sim::run::{self, Here, Host, Options, Progress, Scenario};
+use host_sim::run::{self, Here, Host, Options, Progress};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{ConditionsArgs, MediumKind};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
-use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Cell;
-use planner_core::radio::{Key, MAX_LEN};
 
-use super::faults::FaultArgs;
-use super::folder::Folder;
+use super::output::OutputArgs;
 use super::report;
 use super::{Done, tell_notes};
+
+/// Seed of all chance unless said otherwise.
+const SEED: u64 = 1;
 
 #[derive(Args)]
 pub(crate) struct Explore {
@@ -48,41 +48,9 @@ pub(crate) struct Explore {
     /// below 360, for the explorer alone, robots turn to look around.
     #[arg(long, value_name = "DEGREES", default_value_t = ALL_AROUND, value_parser = clap::value_parser!(u16).range(1..=360))]
     fov: u16,
-    /// How robots tell each other what they know: in radio frames of at most 55
-    /// bytes, or ideally, whole maps at once as in the papers.
-    #[arg(long, value_name = "NAME", default_value = "radio")]
-    medium: MediumKind,
-    /// Ticks between two exchanges of maps, or between two transmissions of a
-    /// robot; 0: never.
-    #[arg(long, value_name = "D", default_value_t = 1)]
-    sync: u32,
-    /// Bytes that a robot may send by radio in a tick on average; less than a
-    /// frame: one every few ticks.
-    #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
-    byte_budget: u16,
-    /// Sign frames, and take signed ones only: the fleet's secret as 32 hex digits, or a
-    /// file that holds them.
-    #[arg(long, value_name = "HEX|FILE", value_parser = super::key::parse)]
-    key: Option<Key>,
-    /// Seed of all chance in the run.
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
     /// A cell holds at most one robot.
     #[arg(long)]
     solid: bool,
-    /// Give up after this many ticks. Default: 1000 and 8 for each reachable
-    /// cell, for bmilrv 100.
-    #[arg(long, value_name = "T")]
-    max_ticks: Option<u32>,
-    /// Folder for pictures, trace and summary. Default: out/ and the map's name.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the summary as one JSON object.
-    #[arg(long)]
-    json: bool,
-    /// No progress bar.
-    #[arg(long)]
-    quiet: bool,
     /// Images: N×N pixels are one cell.
     #[arg(long, value_name = "N", conflicts_with = "cell_size", value_parser = clap::value_parser!(u32).range(1..))]
     pixels_per_cell: Option<u32>,
@@ -90,7 +58,9 @@ pub(crate) struct Explore {
     #[arg(long, value_name = "METRES")]
     cell_size: Option<f64>,
     #[command(flatten)]
-    faults: FaultArgs,
+    output: OutputArgs,
+    #[command(flatten)]
+    conditions: ConditionsArgs,
 }
 
 /// One value of `--start`.
@@ -133,11 +103,10 @@ impl Explore {
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
         tell_notes(&self.map, &world);
         let scenario = self.scenario(world)?;
-        let out = self.out.clone();
-        let out = out.unwrap_or_else(|| PathBuf::from("out").join(scenario.world.name()));
-        let mut folder = Folder::open(out)?;
+        let mut folder = self.output.folder(scenario.world.name())?;
 
-        let bar = self.progress_bar(&scenario);
+        let cells = scenario.world.reachable(&scenario.starts).count();
+        let bar = self.output.bar(cells, "cells");
         let mut advance = |progress: Progress| {
             bar.set_position(progress.seen_cells.into());
             bar.set_message(format!("tick {}", progress.ticks));
@@ -163,7 +132,7 @@ impl Explore {
         let path = folder.path().to_path_buf();
         folder.close()?;
 
-        if self.json {
+        if self.output.json {
             println!("{json}");
         } else {
             report::print(&summary, &path);
@@ -183,8 +152,8 @@ impl Explore {
 
     /// Whether frames are to be signed.
     #[cfg(unix)]
-    pub(super) const fn has_key(&self) -> bool {
-        self.key.is_some()
+    pub(super) fn has_key(&self) -> bool {
+        self.conditions.has_key()
     }
 
     fn read_options(&self) -> ReadOptions {
@@ -205,16 +174,10 @@ impl Explore {
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.fov = self.fov;
-        scenario.sync = self.sync;
-        scenario.loss = self.faults.loss;
-        scenario.air = self.faults.air();
-        scenario.faults = self.faults.of_robots(self.robots.into())?;
-        scenario.medium = self.medium;
-        scenario.byte_budget = self.byte_budget;
-        scenario.key = self.key;
-        scenario.seed = self.seed;
         scenario.solid = self.solid;
-        scenario.max_ticks = self.max_ticks.unwrap_or(scenario.max_ticks);
+        scenario.conditions.medium = MediumKind::Radio;
+        scenario.conditions.seed = SEED;
+        self.conditions.clone().set(&mut scenario.conditions)?;
         scenario.check()?;
         Ok(scenario)
     }
@@ -228,7 +191,7 @@ impl Explore {
             [] => world.default_starts(),
             [Start::Center] => Starts::Center,
             [Start::Corner] => Starts::Corner,
-            [Start::Random] => Starts::Random(self.seed),
+            [Start::Random] => Starts::Random(self.conditions.seed().unwrap_or(SEED)),
             _ => Starts::At(
                 self.start
                     .iter()
@@ -237,22 +200,5 @@ impl Explore {
                     .ok_or("--start: center, corner and random stand alone; give either one of them, or one or more X,Y")?,
             ),
         })
-    }
-
-    fn progress_bar(&self, scenario: &Scenario) -> ProgressBar {
-        if self.json || self.quiet || !std::io::stderr().is_terminal() {
-            return ProgressBar::hidden();
-        }
-        let cells = scenario.world.reachable(&scenario.starts).count();
-        let style = "{spinner} {percent:>3} % {wide_bar} {pos}/{len} cells seen, {msg} [{elapsed}]";
-        ProgressBar::new(cells.into())
-            .with_style(ProgressStyle::with_template(style).expect("the template is well-formed"))
-    }
-}
-
-pub(super) fn parse_share(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
-        _ => Err("expected a share from 0 (nothing) to 1 (everything), for example 0.6".into()),
     }
 }

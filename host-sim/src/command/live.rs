@@ -9,9 +9,9 @@ use std::time::Duration;
 use clap::Args;
 use host_sim::live::{self, Event, RobotOptions, Server, WorldOptions};
 use host_sim::planners::PlannerKind;
-use host_sim::run::default_max_ticks;
+use host_sim::scenario::LinkArgs;
+use host_sim::scenario::grid::default_max_ticks;
 use host_sim::world::{self, ReadOptions};
-use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 
 use super::{Done, tell_notes};
 
@@ -63,13 +63,8 @@ pub(crate) struct Robot {
     /// What decides.
     #[arg(long, value_name = "NAME", default_value = "explorer")]
     planner: PlannerKind,
-    /// Bytes that it may send in a tick on average.
-    #[arg(long, value_name = "BYTES", default_value_t = MAX_LEN as u16)]
-    byte_budget: u16,
-    /// Sign frames, and take signed ones only: the fleet's secret as 32 hex digits, or a
-    /// file that holds them.
-    #[arg(long, value_name = "HEX|FILE", value_parser = super::key::parse)]
-    key: Option<Key>,
+    #[command(flatten)]
+    link: LinkArgs,
 }
 
 impl World {
@@ -130,11 +125,7 @@ impl Robot {
             world: self.world,
             listen,
             peers,
-            link: LinkConfig {
-                bytes_per_tick: self.byte_budget,
-                key: self.key,
-                ..LinkConfig::new()
-            },
+            link: self.link.link(),
         })?;
         println!("{}", serde_json::to_string(&report)?);
         Ok(match report.stop {

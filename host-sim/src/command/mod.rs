@@ -2,14 +2,13 @@
 
 mod compare;
 mod explore;
-mod faults;
 mod figures;
 #[cfg(unix)]
 mod firmware;
 mod folder;
 mod generate;
-mod key;
 mod live;
+mod output;
 mod report;
 mod survey;
 

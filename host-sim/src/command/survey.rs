@@ -1,22 +1,27 @@
 //! `host-sim survey`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw::{Coverage, animate, oblique_view, top_view, write_png};
-use host_sim::medium::MediumKind;
-use host_sim::survey::voxels::{self, Scene, Simulation, VoxelTrace};
-use host_sim::survey::{
-    DEFAULT_BYTE_BUDGET, Kill, Planner, Scenario, Summary, TerrainSource, octree, open,
+use host_sim::run::heights::open;
+use host_sim::run::voxels::Simulation;
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::{
+    Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
+use host_sim::scene::Scene;
+use host_sim::survey::voxels::VoxelTrace;
+use host_sim::survey::{Summary, octree};
+use host_sim::terrain::TerrainSource;
+use indicatif::ProgressBar;
 use planner_core::survey::Limits;
 use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
-use super::explore::parse_share;
-use super::folder::Folder;
+use super::output::OutputArgs;
 
 /// Columns along a side of a terrain of heights, unless said otherwise.
 const SIDE: u16 = 100;
@@ -28,7 +33,7 @@ pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
     /// OctoMap .bt file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
     /// rooms and bridges: there another planner flies, a voxel a step, and --planner,
-    /// --step, --min-altitude, --ceiling, --skip and --kill are refused.
+    /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
     /// Columns along a side of a terrain drawn by a seed: 8 to 512, default 100; of a town
@@ -54,39 +59,17 @@ pub(crate) struct Survey {
     /// Greatest height, at most 500 cells. Default: 40.
     #[arg(long, value_name = "Z")]
     ceiling: Option<f32>,
-    /// How robots tell each other what they know: in radio frames of at most 55
-    /// bytes, or ideally, all news at once as in the paper.
-    #[arg(long, value_name = "NAME", default_value = "radio")]
-    medium: MediumKind,
-    /// Bytes that a robot may send by radio in a step on average. Default: 550.
-    #[arg(long, value_name = "BYTES")]
-    byte_budget: Option<u16>,
-    /// Share of messages lost, 0 to 1.
-    #[arg(long, value_name = "P", default_value_t = 0.0, value_parser = parse_share)]
-    loss: f64,
     /// Share of its steps that a robot sleeps through, 0 to 1. Default: 0.
     #[arg(long, value_name = "P", value_parser = parse_share)]
     skip: Option<f64>,
-    /// ROBOT@STEP: this robot (from 0) dies before this step. May be given again.
-    #[arg(long, value_name = "ROBOT@STEP")]
-    kill: Vec<Kill>,
-    /// Seed of the robots' random choices and of the faults.
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    seed: u64,
-    /// Steps after which the run is given up.
-    #[arg(long, value_name = "N", default_value_t = 20_000)]
-    max_ticks: u32,
-    /// Folder for the results; default: out/ and the name of the terrain.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the summary as JSON.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    output: OutputArgs,
+    #[command(flatten)]
+    conditions: ConditionsArgs,
 }
 
 impl Survey {
     pub(crate) fn run(self) -> Done {
-        self.check_budget()?;
         if matches!(self.terrain, TerrainSource::Town(_)) {
             self.check_for_voxels()?;
             let scene = self.terrain.scene(self.size.unwrap_or(TOWN));
@@ -101,11 +84,13 @@ impl Survey {
         }
         let terrain = self.terrain.load(self.size.unwrap_or(SIDE))?;
         let terrain = Arc::new(terrain);
-        let mut run = open(terrain.clone(), &self.scenario())?;
-        let out = self.out;
-        let out = out.unwrap_or_else(|| PathBuf::from("out").join(terrain.name()));
-        let mut folder = Folder::open(out)?;
-        while run.step() {}
+        let mut run = open(terrain.clone(), &self.scenario()?)?;
+        let mut folder = self.output.folder(terrain.name())?;
+        let bar = self.output.bar(terrain.extent().cells(), "columns");
+        while run.step() {
+            advance(&bar, &run.trace().seen);
+        }
+        bar.finish_and_clear();
         let trace = run.finish();
         let summary = Summary::new(&trace);
         let json = serde_json::to_string_pretty(&summary)?;
@@ -126,7 +111,7 @@ impl Survey {
         folder.write("map.bt", |file| Ok(octree(&trace, all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
-        match self.json {
+        match self.output.json {
             true => println!("{json}"),
             false => print(&summary, &path),
         }
@@ -145,20 +130,16 @@ impl Survey {
 
     /// The same in a scene of voxels.
     fn run_in(self, scene: &Scene) -> Done {
-        let scenario = voxels::Scenario {
-            robots: self.robots.into(),
-            range: self.range as u8,
-            medium: self.medium,
-            byte_budget: self.byte_budget.unwrap_or(DEFAULT_BYTE_BUDGET),
-            loss: self.loss,
-            seed: self.seed,
-            max_ticks: self.max_ticks,
-        };
+        let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
+        scenario.range = self.range as u8;
+        self.set(&mut scenario.conditions)?;
         let mut run = Simulation::new(scene, &scenario)?;
-        let out = self.out;
-        let out = out.unwrap_or_else(|| PathBuf::from("out").join(scene.name()));
-        let mut folder = Folder::open(out)?;
-        while run.step() {}
+        let mut folder = self.output.folder(scene.name())?;
+        let bar = self.output.bar(run.trace().visible, "voxels");
+        while run.step() {
+            advance(&bar, &run.trace().seen);
+        }
+        bar.finish_and_clear();
         let trace = run.finish();
         let work = trace.records.iter().map(|record| record.work);
         let robots: Vec<_> = (0..scenario.robots)
@@ -180,10 +161,10 @@ impl Survey {
             "map": scene.name(),
             "planner": "voxel-survey",
             "range": scenario.range,
-            "medium": scenario.medium,
-            "byte_budget": scenario.byte_budget,
-            "loss": scenario.loss,
-            "seed": scenario.seed,
+            "medium": scenario.conditions.medium,
+            "byte_budget": scenario.conditions.byte_budget,
+            "loss": scenario.conditions.loss,
+            "seed": scenario.conditions.seed,
             "robots": robots,
         });
         let json = serde_json::to_string_pretty(&json)?;
@@ -202,7 +183,7 @@ impl Survey {
         let path = folder.path().to_path_buf();
         folder.close()?;
         let seen = trace.seen.last().copied().unwrap_or(0);
-        if self.json {
+        if self.output.json {
             println!("{json}");
         } else {
             let (name, visible) = (scene.name(), trace.visible);
@@ -230,14 +211,10 @@ impl Survey {
         Ok(ExitCode::FAILURE)
     }
 
-    /// What robots share without radio has no bytes.
-    fn check_budget(&self) -> Result<(), &'static str> {
-        match (self.medium, self.byte_budget) {
-            (MediumKind::Ideal, Some(_)) => {
-                Err("--byte-budget does not apply with --medium ideal; leave one of them out")
-            }
-            _ => Ok(()),
-        }
+    /// Sets the conditions that are given, over those of every survey.
+    fn set(&self, conditions: &mut Conditions) -> Result<(), ScenarioError> {
+        conditions.medium = MediumKind::Radio;
+        self.conditions.clone().set(conditions)
     }
 
     /// Nothing that a survey of voxels would have to ignore or round.
@@ -248,7 +225,6 @@ impl Survey {
             ("min-altitude", self.min_altitude.is_some()),
             ("ceiling", self.ceiling.is_some()),
             ("skip", self.skip.is_some()),
-            ("kill", !self.kill.is_empty()),
         ];
         if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
             return Err(format!(
@@ -270,27 +246,27 @@ impl Survey {
         }
     }
 
-    fn scenario(&self) -> Scenario {
+    fn scenario(&self) -> Result<Scenario, ScenarioError> {
         let planner = self.planner.unwrap_or(Planner::CoordinatedSurvey);
-        let scenario = Scenario::new(planner, self.robots.into(), self.seed);
+        let mut scenario = Scenario::new(planner, self.robots.into(), 0);
         let usual = scenario.limits;
-        Scenario {
-            limits: Limits {
-                range: self.range,
-                step: self.step.unwrap_or(usual.step),
-                min_altitude: self.min_altitude.unwrap_or(usual.min_altitude),
-                ceiling: self.ceiling.unwrap_or(usual.ceiling),
-                ..usual
-            },
-            medium: self.medium,
-            byte_budget: self.byte_budget.unwrap_or(scenario.byte_budget),
-            loss: self.loss,
-            skip: self.skip.unwrap_or(scenario.skip),
-            kills: self.kill.clone(),
-            max_ticks: self.max_ticks,
-            ..scenario
-        }
+        scenario.limits = Limits {
+            range: self.range,
+            step: self.step.unwrap_or(usual.step),
+            min_altitude: self.min_altitude.unwrap_or(usual.min_altitude),
+            ceiling: self.ceiling.unwrap_or(usual.ceiling),
+            ..usual
+        };
+        scenario.skip = self.skip.unwrap_or(scenario.skip);
+        self.set(&mut scenario.conditions)?;
+        Ok(scenario)
     }
+}
+
+/// Moves the bar to what has been seen after the last step.
+fn advance(bar: &ProgressBar, seen: &[u32]) {
+    bar.set_position(seen.last().copied().unwrap_or(0).into());
+    bar.set_message(format!("step {}", seen.len()));
 }
 
 /// What one robot of a survey of voxels came to.

@@ -212,11 +212,11 @@ fn draw_end(
 /// The scenario in a line.
 pub(super) fn title(trace: &Trace) -> String {
     let scenario = &trace.scenario;
-    let radio = match scenario.sync {
+    let radio = match scenario.conditions.sync {
         0 => "no radio".into(),
-        1 if scenario.loss == 0.0 => "maps shared every tick".into(),
+        1 if scenario.conditions.loss == 0.0 => "maps shared every tick".into(),
         sync => {
-            let loss = 100.0 * scenario.loss;
+            let loss = 100.0 * scenario.conditions.loss;
             format!("maps shared every {sync} ticks, {loss:.0} % lost")
         }
     };

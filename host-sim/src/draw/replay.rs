@@ -29,7 +29,7 @@ impl<'a> Replay<'a> {
         let world = &scenario.world;
         Self {
             trace,
-            senses: scenario.senses(scenario.sensor()),
+            senses: Senses::of(scenario, scenario.sensor()),
             reachable: world.reachable(&scenario.starts),
             seen: vec![false; world.extent().cells() as usize],
             seen_cells: 0,

@@ -10,7 +10,8 @@ use thiserror::Error;
 use super::journal::JournalError;
 use super::plan::{Plan, Site};
 use super::row::{Key, Row};
-use crate::run::{Options, Outcome, ScenarioError, run};
+use crate::run::{Options, Outcome, run};
+use crate::scenario::ScenarioError;
 use crate::sensor::Sensor;
 use crate::world::WorldError;
 

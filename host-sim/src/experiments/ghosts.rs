@@ -8,9 +8,10 @@ use planner_core::RobotId;
 use planner_core::radio::LinkConfig;
 
 use crate::fleet::{Fleet, Rules};
-use crate::medium::{AirFaults, Forger, Forgery, MediumKind};
+use crate::medium;
 use crate::planners::{PlannerKind, Setup};
-use crate::run::default_max_ticks;
+use crate::scenario::grid::default_max_ticks;
+use crate::scenario::{Conditions, Forger, Forgery, MediumKind};
 use crate::sensor::Sensor;
 use crate::world::{Starts, World, WorldError};
 
@@ -80,11 +81,12 @@ fn explore(
     forger: Option<Forger>,
 ) -> Result<Option<u32>, WorldError> {
     let starts = world.place(ids.len(), &Starts::Corner, false)?;
-    let faults = AirFaults {
-        forger,
-        ..AirFaults::default()
-    };
     let max_ticks = default_max_ticks(&world.reachable(&starts), PlannerKind::Explorer);
+    let mut conditions = Conditions {
+        medium: MediumKind::Radio,
+        ..Conditions::new(1, max_ticks)
+    };
+    conditions.air.forger = forger;
     let extent = world.extent();
     let ids = ids.to_vec();
     let build = Box::new(move |id: RobotId, start| {
@@ -98,7 +100,7 @@ fn explore(
             .build(setup)
             .expect("the compiled size holds the world")
     });
-    let medium = MediumKind::Radio.build(1, 0.0, faults, 1, world.clone());
+    let medium = medium::build(&conditions, world.clone());
     let mut fleet = Fleet::<8, 8>::new(sensor.clone(), medium, Rules::default(), build, &starts);
     while !fleet.has_stopped() {
         if fleet.ticks() >= max_ticks {

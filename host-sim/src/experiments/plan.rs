@@ -8,9 +8,9 @@ use planner_core::Cell;
 use serde::{Deserialize, Serialize};
 
 use super::row::Key;
-use crate::medium::MediumKind;
 use crate::planners::PlannerKind;
-use crate::run::Scenario;
+use crate::scenario::MediumKind;
+use crate::scenario::grid::Scenario;
 use crate::world::{Recipe, Starts, World, WorldError};
 
 /// Every combination of these is one run.
@@ -184,10 +184,10 @@ impl Setup {
     pub fn scenario(&self, world: &Arc<World>) -> Result<Scenario, WorldError> {
         let mut scenario = Scenario::new(world.clone(), self.starts(world)?, self.planner);
         scenario.range = self.range;
-        scenario.medium = self.medium;
-        scenario.sync = self.sync;
-        scenario.loss = self.loss;
-        scenario.seed = self.seed + u64::from(self.start);
+        scenario.conditions.medium = self.medium;
+        scenario.conditions.sync = self.sync;
+        scenario.conditions.loss = self.loss;
+        scenario.conditions.seed = self.seed + u64::from(self.start);
         Ok(scenario)
     }
 

@@ -5,9 +5,9 @@ use planner_core::Extent;
 use serde::{Deserialize, Serialize};
 
 use super::plan::{Place, Setup, Site};
-use crate::medium::MediumKind;
 use crate::planners::PlannerKind;
 use crate::run::Outcome;
+use crate::scenario::MediumKind;
 
 /// A run and its metrics, in the column names of the tables.
 ///

@@ -5,8 +5,8 @@ use planner_core::Extent;
 
 use super::figures::{Effort, figures, measure, page};
 use super::*;
-use crate::medium::MediumKind;
 use crate::planners::PlannerKind::{Closest, Explorer, MinPos};
+use crate::scenario::MediumKind;
 use crate::world::{Family, ReadOptions, Recipe, World, paper};
 
 fn plan() -> Plan {

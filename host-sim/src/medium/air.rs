@@ -3,56 +3,11 @@
 use std::sync::Arc;
 
 use planner_core::{Cell, RobotId, sight};
-use serde::{Deserialize, Serialize};
 
-use super::{Fate, Forger, Message};
+use super::{Fate, Message};
 use crate::dice::Dice;
+use crate::scenario::{AirFaults, Conditions, Partition, Reach};
 use crate::world::World;
-
-/// What goes wrong in the air besides plain loss. None of it by default.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct AirFaults {
-    /// Who can hear whom.
-    pub reach: Reach,
-    /// Times when the fleet is cut in two.
-    pub partitions: Vec<Partition>,
-    /// Share of received frames that come twice, 0 to 1. Only frames.
-    pub duplication: f64,
-    /// Each copy of a frame comes this many ticks late at most; what comes late is
-    /// overtaken by what does not. Only frames.
-    pub delay: u32,
-    /// Share of received frames with wrong bits or cut short, 0 to 1. Only frames.
-    pub corruption: f64,
-    /// Somebody who writes frames of his own. Only frames.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub forger: Option<Forger>,
-}
-
-/// Who can hear whom.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Reach {
-    /// Everybody, everybody.
-    #[default]
-    Everywhere,
-    /// Robots that are at most this many cells apart, as the crow flies.
-    Cells(u16),
-    /// Robots with no obstacle between them.
-    LineOfSight,
-}
-
-/// In the ticks `from..until` the robots below `border` and the others do not
-/// hear each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Partition {
-    /// First tick.
-    pub from: u32,
-    /// First tick in which they hear each other again.
-    pub until: u32,
-    /// Lowest id of the second part.
-    pub border: u8,
-}
 
 /// The air of one run: the same calls in the same order meet the same faults.
 pub(super) struct Air {
@@ -66,12 +21,12 @@ pub(super) struct Air {
 }
 
 impl Air {
-    pub(super) fn new(faults: AirFaults, loss: f64, seed: u64, world: Arc<World>) -> Self {
+    pub(super) fn new(conditions: &Conditions, world: Arc<World>) -> Self {
         Self {
-            faults,
-            loss,
+            faults: conditions.air.clone(),
+            loss: conditions.loss,
             world,
-            dice: Dice::new(seed),
+            dice: Dice::new(conditions.seed),
             messages: None,
         }
     }

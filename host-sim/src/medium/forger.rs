@@ -1,98 +1,14 @@
 //! Somebody in the air who writes frames of his own: he hears and sees everything, and
 //! has no key.
 
-use std::fmt;
-use std::str::FromStr;
-
-use clap::ValueEnum;
 use planner_core::map::Tile;
 use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::tile::TileIndex;
 use planner_core::{Activity, Cell, Extent, Map, RobotId, Status};
-use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
 use crate::fleet::Robot;
-
-/// What a forger does, and how much of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Forger {
-    /// Frames that each robot hears in a tick, 1 to 1000. [`Crowd`](Forgery::Crowd) and
-    /// [`Stolen`](Forgery::Stolen) have numbers of their own.
-    pub frames: u16,
-    /// What they say.
-    pub kind: Forgery,
-}
-
-/// What forged frames say. All but `any` and `tiles` lie about robots only, never about
-/// cells.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Forgery {
-    /// Anything: drawn robots with drawn tiles.
-    #[default]
-    Any,
-    /// Robots that are not there, drawn anew in every tick.
-    Hints,
-    /// Robots on the cell of the robot that hears of them.
-    OwnCell,
-    /// Robots on the free cells around it.
-    Around,
-    /// Robots where it goes.
-    Goal,
-    /// A robot where it goes, for three ticks, and far away for three.
-    Jump,
-    /// In every two-hundredth tick each robot is said to have stopped, by a frame with a
-    /// number far ahead of its own.
-    Stolen,
-    /// Robots of all ids, on the cell of the first robot.
-    Crowd,
-}
-
-impl Forgery {
-    /// Those that lie about robots only.
-    pub const HINTS: [Self; 7] = [
-        Self::Hints,
-        Self::OwnCell,
-        Self::Around,
-        Self::Goal,
-        Self::Jump,
-        Self::Stolen,
-        Self::Crowd,
-    ];
-}
-
-/// The name used on the command line, for example `own-cell`.
-impl fmt::Display for Forgery {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = self.to_possible_value().expect("no kind is hidden");
-        f.write_str(value.get_name())
-    }
-}
-
-/// `N` or `N:KIND`.
-impl FromStr for Forger {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let (frames, kind) = text.split_once(':').unwrap_or((text, "any"));
-        let frames = frames.parse().ok().filter(|n| (1..=1000).contains(n));
-        let kind = Forgery::from_str(kind, false).ok();
-        match (frames, kind) {
-            (Some(frames), Some(kind)) => Ok(Self { frames, kind }),
-            _ => {
-                let kinds: Vec<String> = Forgery::value_variants()
-                    .iter()
-                    .map(Forgery::to_string)
-                    .collect();
-                Err(format!(
-                    "expected N or N:KIND with N from 1 to 1000, for example 2:goal; kinds are {}",
-                    kinds.join(", ")
-                ))
-            }
-        }
-    }
-}
+use crate::scenario::{Forger, Forgery};
 
 /// A forger at work. He draws from a generator of his own, so the air is as without him.
 pub(super) struct Desk {

@@ -5,19 +5,15 @@ mod forger;
 mod ideal;
 mod radio;
 
-use std::fmt;
 use std::sync::Arc;
 
-use clap::ValueEnum;
 use planner_core::RobotId;
-use serde::{Deserialize, Serialize};
 
-pub use air::{AirFaults, Partition, Reach};
-pub use forger::{Forger, Forgery};
 pub use ideal::Ideal;
 pub use radio::Radio;
 
 use crate::fleet::Robot;
+use crate::scenario::{Conditions, MediumKind};
 use crate::world::World;
 use air::Air;
 
@@ -60,42 +56,15 @@ pub enum Fate {
     OutOfReach,
 }
 
-/// Names a medium, on the command line and in traces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MediumKind {
-    /// Whole maps at once, as in the papers.
-    #[default]
-    Ideal,
-    /// Frames of at most 55 bytes.
-    Radio,
-}
-
-/// The name used on the command line, for example `radio`.
-impl fmt::Display for MediumKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = self.to_possible_value().expect("no medium is hidden");
-        f.write_str(value.get_name())
-    }
-}
-
-impl MediumKind {
-    /// The medium in a world in which robots speak every `sync` ticks (0: never),
-    /// the share `loss` of all messages is lost, and faults are drawn by `seed`.
-    pub fn build<const TW: usize, const TH: usize>(
-        self,
-        sync: u32,
-        loss: f64,
-        faults: AirFaults,
-        seed: u64,
-        world: Arc<World>,
-    ) -> Box<dyn Medium<TW, TH>> {
-        let forger = faults.forger;
-        let air = Air::new(faults, loss, seed, world);
-        match self {
-            Self::Ideal => Box::new(Ideal::new(air, sync)),
-            Self::Radio => Box::new(Radio::new(air, sync, forger, seed)),
-        }
+/// The medium of these conditions, in a world.
+pub fn build<const TW: usize, const TH: usize>(
+    conditions: &Conditions,
+    world: Arc<World>,
+) -> Box<dyn Medium<TW, TH>> {
+    let air = Air::new(conditions, world);
+    match conditions.medium {
+        MediumKind::Ideal => Box::new(Ideal::new(air, conditions.sync)),
+        MediumKind::Radio => Box::new(Radio::new(air, conditions)),
     }
 }
 

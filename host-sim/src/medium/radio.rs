@@ -4,9 +4,10 @@ use planner_core::RobotId;
 use planner_core::radio::MAX_LEN;
 
 use super::air::Air;
-use super::forger::{Desk, Forger};
+use super::forger::Desk;
 use super::{Fate, Medium, Message};
 use crate::fleet::Robot;
+use crate::scenario::Conditions;
 
 /// Every robot broadcasts as many frames as its planner's budget allows; the air
 /// decides who receives which, when, how often and in what state.
@@ -28,12 +29,13 @@ struct Flight {
 }
 
 impl Radio {
-    pub(super) fn new(air: Air, sync: u32, forger: Option<Forger>, seed: u64) -> Self {
+    pub(super) fn new(air: Air, conditions: &Conditions) -> Self {
+        let forger = conditions.air.forger;
         Self {
             air,
-            sync,
+            sync: conditions.sync,
             flights: Vec::new(),
-            forger: forger.map(|forger| Desk::new(forger, seed)),
+            forger: forger.map(|forger| Desk::new(forger, conditions.seed)),
         }
     }
 

@@ -8,9 +8,10 @@ use planner_core::{Cell, Extent, Map, RobotId, Status, TileSet};
 use proptest::prelude::*;
 
 use super::air::Air;
-use super::{AirFaults, Fate, Medium, MediumKind, Partition, Reach};
-use crate::fleet::{Death, Faults, Fleet, Robot, Rules};
+use super::{Fate, Medium, build};
+use crate::fleet::{Fleet, Robot, Rules};
 use crate::planners::{PlannerKind, Setup};
+use crate::scenario::{AirFaults, Conditions, Event, Faults, MediumKind, Partition, Reach};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate};
 
@@ -78,22 +79,22 @@ proptest! {
         let rules = Rules {
             solid: false,
             faults: Faults {
-                deaths: vec![Death { robot: RobotId(0), tick: death }],
+                deaths: vec![Event { robot: RobotId(0), tick: death }],
                 ..Faults::default()
             },
         };
-        let faults = AirFaults { reach, ..AirFaults::default() };
         let fleet = |medium| {
             let extent = world.extent();
-            let build = Box::new(move |id, start| {
+            let planners = Box::new(move |id, start| {
                 planner.build(Setup { id, extent, start, link: LinkConfig::new() }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
-            Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), build, &starts)
+            Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), planners, &starts)
         };
-        let mut fast =
-            fleet(MediumKind::Ideal.build(sync, loss, faults.clone(), seed, world.clone()));
-        let mut slow = fleet(whole_maps(Air::new(faults, loss, seed, world.clone()), sync));
+        let mut conditions = Conditions { sync, loss, ..Conditions::new(seed, 120) };
+        conditions.air.reach = reach;
+        let mut fast = fleet(build(&conditions, world.clone()));
+        let mut slow = fleet(whole_maps(Air::new(&conditions, world.clone()), sync));
         for tick in 0..120 {
             fast.tick();
             slow.tick();
@@ -107,10 +108,18 @@ proptest! {
     }
 }
 
+fn conditions(air: AirFaults, loss: f64) -> Conditions {
+    Conditions {
+        air,
+        loss,
+        ..Conditions::new(7, 50)
+    }
+}
+
 fn air(faults: AirFaults, loss: f64) -> Air {
     let row = |cell: Cell| cell.x == 5;
     let world = World::from_fn("wall", Extent::new(20, 3), row).unwrap();
-    Air::new(faults, loss, 7, Arc::new(world))
+    Air::new(&conditions(faults, loss), Arc::new(world))
 }
 
 #[test]
@@ -180,7 +189,7 @@ fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
     let world = Arc::new(generate(Family::Rooms, 30, 30, 1).unwrap());
     let starts = world.place(2, &Starts::Random(1), false).unwrap();
     let extent = world.extent();
-    let build = Box::new(move |id, start| {
+    let planners = Box::new(move |id, start| {
         let link = LinkConfig::new();
         let setup = Setup {
             id,
@@ -191,8 +200,12 @@ fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
         PlannerKind::Explorer.build(setup).unwrap()
     });
     let sensor = Arc::new(Sensor::new(world.clone(), 4));
-    let medium = kind.build(1, loss, faults, 1, world);
-    let mut fleet = Fleet::<SIDE, SIDE>::new(sensor, medium, Rules::default(), build, &starts);
+    let conditions = Conditions {
+        medium: kind,
+        ..conditions(faults, loss)
+    };
+    let medium = build(&conditions, world);
+    let mut fleet = Fleet::<SIDE, SIDE>::new(sensor, medium, Rules::default(), planners, &starts);
     fleet.listen();
     let mut sums = [0; 4];
     for _ in 0..50 {

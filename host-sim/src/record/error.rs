@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use super::Format;
 use crate::excerpt::excerpt;
-use crate::run::ScenarioError;
+use crate::scenario::ScenarioError;
 use crate::world::WorldError;
 
 /// A trace that cannot be read.

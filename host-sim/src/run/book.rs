@@ -5,9 +5,10 @@ use std::sync::Arc;
 use planner_core::radio::Hearsay;
 use planner_core::{Cell, Direction, Map};
 
-use super::{Assignments, Outcome, Progress, RobotOutcome, Scenario};
+use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
 use crate::fleet::{Deed, Fleet, Robot, Sent};
+use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::sensor::Sensor;
 use crate::trace::{Record, Trace};
@@ -56,7 +57,7 @@ impl Book {
         };
         Self {
             coverage: Coverage::new(&scenario.world, &reachable, robots),
-            senses: scenario.senses(sensor),
+            senses: Senses::of(scenario, sensor),
             reachable,
             looked_from: vec![None; robots],
             outcome,

@@ -7,9 +7,11 @@ use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, RobotId, Wait};
 
 use super::book::Book;
-use super::{Host, Outcome, Progress, Scenario, fleet_on};
+use super::grid::fleet_on;
+use super::{Host, Outcome, Progress};
 use crate::fleet::{Fleet, Robot, Step};
 use crate::medium::Message;
+use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
 use crate::trace::{Record, Trace};
 
@@ -51,7 +53,7 @@ impl<const TW: usize, const TH: usize> Running<TW, TH> {
 
     /// Whether every living robot has stopped, or time is up.
     pub fn is_over(&self) -> bool {
-        self.fleet.ticks() >= self.scenario.max_ticks || self.fleet.has_stopped()
+        self.fleet.ticks() >= self.scenario.conditions.max_ticks || self.fleet.has_stopped()
     }
 
     /// How far the run has come.

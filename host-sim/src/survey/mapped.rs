@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use planner_core::Direction;
 
-use super::octree::OcTree;
 use super::trace::Trace;
+use crate::scene::octree::OcTree;
 
 /// The surface seen after `steps` steps as occupied voxels of one metre: the highest of
 /// each column, and below it those that a lower column beside it lays open.

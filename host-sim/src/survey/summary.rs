@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::{Deed, Planner, Safety, Trace};
-use crate::medium::MediumKind;
+use super::{Deed, Safety, Trace};
+use crate::scenario::heights::Planner;
+use crate::scenario::{Event, MediumKind};
 
 /// What a survey came to; the keys are those of `explore` where they mean the same. A
 /// cell is a column here.
@@ -118,11 +119,11 @@ impl Summary {
             planner: scenario.planner,
             range: scenario.limits.range,
             step: scenario.limits.step,
-            medium: scenario.medium,
-            byte_budget: scenario.byte_budget,
-            loss: scenario.loss,
+            medium: scenario.conditions.medium,
+            byte_budget: scenario.conditions.byte_budget,
+            loss: scenario.conditions.loss,
             skip: scenario.skip,
-            seed: scenario.seed,
+            seed: scenario.conditions.seed,
             robots,
         }
     }
@@ -135,7 +136,9 @@ impl RobotSummary {
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
         let start = trace.starts[robot];
         let stop = trace.stops[robot];
-        let dies = |kill: &super::Kill| kill.robot == robot && kill.step < trace.seen.len() as u32;
+        let deaths = &trace.scenario.conditions.faults.deaths;
+        let dies =
+            |of: &Event| usize::from(of.robot.0) == robot && of.tick < trace.seen.len() as u32;
         Self {
             start: (start.x, start.y, start.z),
             steps: count(Deed::Flew),
@@ -148,7 +151,7 @@ impl RobotSummary {
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
             stop: stop.map(|stop| stop.name()),
             stop_reason: stop.map(|stop| stop.to_string()),
-            alive: !trace.scenario.kills.iter().any(dies),
+            alive: !deaths.iter().any(dies),
         }
     }
 }

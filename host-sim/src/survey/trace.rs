@@ -10,14 +10,15 @@ mod read;
 use std::io;
 
 use planner_core::surface::Column;
+use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point, Stop};
 use serde::{Deserialize, Serialize};
 
-use super::scenario::{Planner, Scenario};
-use super::terrain::Terrain;
 use crate::fleet::Sent;
-use crate::medium::MediumKind;
 use crate::record::{self, Deed, Format};
+use crate::scenario::Conditions;
+use crate::scenario::heights::{Planner, Scenario};
+use crate::terrain::Terrain;
 
 const FORMAT: Format = Format {
     name: "host-sim survey trace",
@@ -144,7 +145,7 @@ pub struct Trace {
 }
 
 impl Trace {
-    pub(super) fn new(terrain: &Terrain, scenario: &Scenario, starts: Vec<Point>) -> Self {
+    pub(crate) fn new(terrain: &Terrain, scenario: &Scenario, starts: Vec<Point>) -> Self {
         Self {
             scenario: scenario.clone(),
             terrain: terrain.clone(),
@@ -223,20 +224,12 @@ impl Trace {
 #[derive(Serialize, Deserialize)]
 struct Header {
     planner: Planner,
-    range: f32,
-    step: f32,
-    min_altitude: f32,
-    ceiling: f32,
-    separation: f32,
-    medium: MediumKind,
-    byte_budget: u16,
-    loss: f64,
+    #[serde(flatten)]
+    limits: Limits,
     skip: f64,
-    seed: u64,
-    max_ticks: u32,
+    #[serde(flatten)]
+    conditions: Conditions,
     starts: Vec<[f32; 3]>,
-    /// (robot, step)
-    deaths: Vec<(usize, u32)>,
     /// Of each robot at the end; older traces have none.
     #[serde(default)]
     stops: Vec<Option<Stop>>,
@@ -252,27 +245,13 @@ struct Heights {
 
 impl Header {
     fn of(trace: &Trace) -> Self {
-        let Scenario {
-            planner,
-            limits,
-            kills,
-            ..
-        } = &trace.scenario;
+        let scenario = &trace.scenario;
         Self {
-            planner: *planner,
-            range: limits.range,
-            step: limits.step,
-            min_altitude: limits.min_altitude,
-            ceiling: limits.ceiling,
-            separation: limits.separation,
-            medium: trace.scenario.medium,
-            byte_budget: trace.scenario.byte_budget,
-            loss: trace.scenario.loss,
-            skip: trace.scenario.skip,
-            seed: trace.scenario.seed,
-            max_ticks: trace.scenario.max_ticks,
+            planner: scenario.planner,
+            limits: scenario.limits,
+            skip: scenario.skip,
+            conditions: scenario.conditions.clone(),
             starts: trace.starts.iter().map(|p| [p.x, p.y, p.z]).collect(),
-            deaths: kills.iter().map(|kill| (kill.robot, kill.step)).collect(),
             stops: trace.stops.clone(),
             world: Heights::of(&trace.terrain),
         }

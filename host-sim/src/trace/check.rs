@@ -5,7 +5,7 @@ use planner_core::Cell;
 use super::{LAST_ACT, NOWHERE, Record, Row};
 use crate::fleet::{Deed, Sent};
 use crate::record::{Objection, Order, Reason, wrong};
-use crate::run::Scenario;
+use crate::scenario::grid::Scenario;
 
 /// Most ticks without a record, all together: every robot is dead or still to come.
 const MOST_EMPTY_TICKS: u32 = 1_000_000;
@@ -27,7 +27,7 @@ impl<'a> Checked<'a> {
             positions: scenario.starts.clone(),
             order: Order {
                 robots: scenario.starts.len(),
-                end: scenario.max_ticks,
+                end: scenario.conditions.max_ticks,
                 last: None,
             },
             empty_ticks: 0,
@@ -94,7 +94,7 @@ impl<'a> Checked<'a> {
     fn check_gap(&mut self, next: u32, tick: u32) -> Result<(), Objection> {
         let empty = tick.saturating_sub(next);
         self.empty_ticks = self.empty_ticks.saturating_add(empty);
-        let faults = &self.scenario.faults;
+        let faults = &self.scenario.conditions.faults;
         let arrivals = faults.arrivals.iter().map(|arrival| arrival.tick);
         let mut births = arrivals.chain(faults.restarts.iter().map(|restart| restart.tick));
         if empty > 0 && births.all(|birth| birth != tick) {

@@ -6,61 +6,59 @@ use sha2::{Digest, Sha256};
 
 use super::check::Checked;
 use super::*;
-use crate::fleet::{
-    Arrival, Blind, Closure, Death, Faults, LostPose, Restart, Resume, SensorFailure,
-};
-use crate::medium::{AirFaults, MediumKind, Reach};
 use crate::planners::PlannerKind;
 use crate::record::Row as _;
 use crate::run::{Options, run};
+use crate::scenario::{AirFaults, MediumKind, Reach};
+use crate::scenario::{CellSpan, Event, Faults, RobotSpan};
 use crate::world::{Family, Starts, World, generate};
 
 fn trace() -> Trace {
     let world = Arc::new(generate(Family::Rooms, 40, 30, 7).unwrap());
     let starts = world.place(3, &Starts::Center, false).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Closest);
-    scenario.loss = 0.3;
-    scenario.medium = MediumKind::Radio;
-    scenario.air = AirFaults {
+    scenario.conditions.loss = 0.3;
+    scenario.conditions.medium = MediumKind::Radio;
+    scenario.conditions.air = AirFaults {
         reach: Reach::Cells(20),
         delay: 3,
         corruption: 0.1,
         ..AirFaults::default()
     };
-    scenario.seed = u64::MAX;
-    scenario.max_ticks = 400;
-    scenario.faults = Faults {
-        deaths: vec![Death {
+    scenario.conditions.seed = u64::MAX;
+    scenario.conditions.max_ticks = 400;
+    scenario.conditions.faults = Faults {
+        deaths: vec![Event {
             robot: RobotId(1),
             tick: 40,
         }],
-        closures: vec![Closure {
+        closures: vec![CellSpan {
             cell: Cell::new(9, 9),
             from: 3,
             until: 50,
         }],
-        arrivals: vec![Arrival {
+        arrivals: vec![Event {
             robot: RobotId(2),
             tick: 7,
         }],
-        restarts: vec![Restart {
+        restarts: vec![Event {
             robot: RobotId(1),
             tick: 90,
         }],
-        resumes: vec![Resume {
+        resumes: vec![Event {
             robot: RobotId(0),
             tick: 60,
         }],
-        blind: vec![Blind {
+        blind: vec![CellSpan {
             cell: Cell::new(0, 3),
             from: 0,
             until: u32::MAX,
         }],
-        sensor_failures: vec![SensorFailure {
+        sensor_failures: vec![Event {
             robot: RobotId(2),
             tick: 200,
         }],
-        lost_poses: vec![LostPose {
+        lost_poses: vec![RobotSpan {
             robot: RobotId(0),
             from: 30,
             until: 35,
@@ -101,7 +99,7 @@ fn a_header_names_a_field_of_view_and_faults_of_senses_only_where_there_are_any(
     for name in &names[1..] {
         assert!(has(&text(&trace), name), "{name}");
     }
-    trace.scenario.faults = Faults::default();
+    trace.scenario.conditions.faults = Faults::default();
     for name in names {
         assert!(!has(&text(&trace), name), "{name}");
     }
@@ -280,8 +278,8 @@ fn a_gap_ends_where_somebody_comes_and_is_not_endless() {
         last.at = last.after();
         last.tick = tick;
         trace.records.push(last);
-        trace.scenario.max_ticks = u32::MAX;
-        trace.scenario.faults.restarts = vec![Restart {
+        trace.scenario.conditions.max_ticks = u32::MAX;
+        trace.scenario.conditions.faults.restarts = vec![Event {
             robot: RobotId(0),
             tick,
         }];

@@ -8,9 +8,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use host_sim::chip::{ChipError, Machine, Swarm};
-use host_sim::medium::MediumKind::Radio;
 use host_sim::planners::PlannerKind::{self, Explorer};
 use host_sim::run::{self, Options};
+use host_sim::scenario::MediumKind::Radio;
 use host_sim::world::World;
 use planner_core::Extent;
 

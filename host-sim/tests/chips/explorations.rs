@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::measured::{Call, Measured};
-use host_sim::medium::MediumKind::{self, Ideal, Radio};
 use host_sim::planners::PlannerKind::{self, Explorer, LocalFrontiers, LocalFrontiersSecondChance};
-use host_sim::run::{self, Options, Scenario};
+use host_sim::run::{self, Options};
+use host_sim::scenario::MediumKind::{self, Ideal, Radio};
+use host_sim::scenario::grid::Scenario;
 use host_sim::trace::Trace;
 use host_sim::world::{Family, ReadOptions, Starts, World, generate, paper};
 
@@ -26,12 +27,12 @@ pub(crate) fn scenario(
 ) -> Scenario {
     let starts = world.place(robots, &Starts::Center, solid).unwrap();
     let mut scenario = Scenario::new(world.clone(), starts, planner);
-    scenario.medium = medium;
-    scenario.loss = loss;
+    scenario.conditions.medium = medium;
+    scenario.conditions.loss = loss;
     scenario.solid = solid;
-    scenario.seed = 7;
+    scenario.conditions.seed = 7;
     // Local frontiers can walk in circles for ever; that must be shown once, not for long.
-    scenario.max_ticks = scenario.max_ticks.min(1500);
+    scenario.conditions.max_ticks = scenario.conditions.max_ticks.min(1500);
     scenario
 }
 

@@ -2,7 +2,11 @@
 
 use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::measured::{Call, Measured};
-use host_sim::survey::{self, Kill, Planner, Scenario, Terrain, Trace};
+use host_sim::run::heights;
+use host_sim::scenario::Event;
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::survey::Trace;
+use host_sim::terrain::Terrain;
 
 use crate::{Largest, image};
 
@@ -12,7 +16,7 @@ fn on_chips(
     machine: Machine,
 ) -> Result<(Trace, Measured), ChipError> {
     let swarm = Swarm::new(machine, image(machine, "robot"));
-    let trace = survey::run_on(&swarm, terrain, scenario).unwrap();
+    let trace = heights::run_on(&swarm, terrain, scenario).unwrap();
     Ok((trace, swarm.finish()?))
 }
 
@@ -36,13 +40,13 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
     for (seed, (terrain, robots, loss, skip)) in (0..).zip(surveys) {
         for (planner, name) in planners {
             let mut scenario = Scenario::new(planner, robots, seed);
-            (scenario.loss, scenario.skip) = (loss, skip);
+            (scenario.conditions.loss, scenario.skip) = (loss, skip);
             if robots > 2 {
-                scenario.kills = vec![Kill { robot: 1, step: 20 }];
+                scenario.conditions.faults.deaths = vec![Event::from((1, 20))];
             }
             let (there, measured) = on_chips(&terrain, &scenario, Machine::Netduinoplus2)
                 .unwrap_or_else(|error| panic!("{error}"));
-            let here = survey::run(&terrain, &scenario).unwrap();
+            let here = heights::run(&terrain, &scenario).unwrap();
             let title = format!("{planner:?} with {robots} robots over {}", terrain.extent());
             for (here, there) in here.records.iter().zip(&there.records) {
                 assert_eq!(here, there, "{title}");

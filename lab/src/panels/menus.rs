@@ -4,11 +4,11 @@ use std::mem::discriminant;
 
 use clap::ValueEnum;
 use egui::{Button, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
-use host_sim::fleet::Faults;
-use host_sim::medium::{MediumKind, Reach};
 use host_sim::planners::PlannerKind;
+use host_sim::scenario::heights::Planner;
+use host_sim::scenario::{Conditions, Faults, MediumKind, Reach};
 use host_sim::sensor::ALL_AROUND;
-use host_sim::survey::{Planner, TerrainSource};
+use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
 use planner_core::Extent;
 use planner_core::sight::MAX_RADIUS;
@@ -46,7 +46,7 @@ impl App {
         }
         self.rival(ui);
         title(ui, "Radio");
-        radio(ui, &mut setup);
+        radio(ui, &mut setup.conditions);
         if (&setup, self.rival) != (&before.0, before.1) {
             if !self.set(setup) {
                 self.rival = before.1;
@@ -110,7 +110,10 @@ impl App {
             *setup = Setup {
                 map,
                 starts: None,
-                faults: Faults::default(),
+                conditions: Conditions {
+                    faults: Faults::default(),
+                    ..setup.conditions.clone()
+                },
                 ..setup.clone()
             };
         }
@@ -251,20 +254,14 @@ impl App {
             ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
         }
         ui.horizontal(|ui| {
-            number(ui, "seed of the drones", DragValue::new(&mut setup.seed));
+            number(
+                ui,
+                "seed of the drones",
+                DragValue::new(&mut setup.conditions.seed),
+            );
         });
         title(ui, "Radio");
-        choice(
-            ui,
-            "medium",
-            &mut setup.medium,
-            MediumKind::value_variants(),
-        );
-        ui.add(
-            Slider::new(&mut setup.loss, 0.0..=1.0)
-                .max_decimals(2)
-                .text("loss"),
-        );
+        medium(ui, &mut setup.conditions);
         title(ui, "View");
         let levels = survey.levels();
         let layers = &mut survey.layers;
@@ -425,7 +422,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     );
     if setup.robots < before {
         let left = setup.robots;
-        let faults = &mut setup.faults;
+        let faults = &mut setup.conditions.faults;
         faults.deaths.retain(|death| death.robot.0 < left);
         faults.arrivals.retain(|arrival| arrival.robot.0 < left);
         faults.restarts.retain(|restart| restart.robot.0 < left);
@@ -449,7 +446,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
                 (None, "as the map says"),
                 (Some(Starts::Center), "centre"),
                 (Some(Starts::Corner), "corner"),
-                (Some(Starts::Random(setup.seed)), "random"),
+                (Some(Starts::Random(setup.conditions.seed)), "random"),
             ] {
                 ui.selectable_value(&mut setup.starts, starts, name);
             }
@@ -460,12 +457,16 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     }
     ui.checkbox(&mut setup.solid, "a cell holds one robot");
     ui.horizontal(|ui| {
-        number(ui, "seed of the run", DragValue::new(&mut setup.seed));
+        number(
+            ui,
+            "seed of the run",
+            DragValue::new(&mut setup.conditions.seed),
+        );
     });
     if let Some(Starts::Random(seed)) = &mut setup.starts {
-        *seed = setup.seed;
+        *seed = setup.conditions.seed;
     }
-    let faults = &mut setup.faults;
+    let faults = &mut setup.conditions.faults;
     if !faults.deaths.is_empty() || !faults.arrivals.is_empty() {
         let (deaths, arrivals) = (faults.deaths.len(), faults.arrivals.len());
         ui.horizontal_wrapped(|ui| {
@@ -510,20 +511,23 @@ fn in_words(faults: &Faults) -> String {
     words.join(", ")
 }
 
-fn radio(ui: &mut Ui, setup: &mut Setup) {
-    choice(
-        ui,
-        "medium",
-        &mut setup.medium,
-        MediumKind::value_variants(),
-    );
-    ui.add(Slider::new(&mut setup.sync, 0..=50).text("sync every (0: never)"));
-    ui.add(
-        Slider::new(&mut setup.loss, 0.0..=1.0)
-            .max_decimals(2)
-            .text("loss"),
-    );
-    let name = match setup.reach {
+/// What carries messages, and how many are lost.
+fn medium(ui: &mut Ui, conditions: &mut Conditions) {
+    let was_radio = conditions.medium == MediumKind::Radio;
+    let all = MediumKind::value_variants();
+    choice(ui, "medium", &mut conditions.medium, all);
+    if was_radio && conditions.medium == MediumKind::Ideal {
+        *conditions = conditions.clone().without_frames();
+    }
+    let loss = Slider::new(&mut conditions.loss, 0.0..=1.0);
+    ui.add(loss.max_decimals(2).text("loss"));
+}
+
+fn radio(ui: &mut Ui, conditions: &mut Conditions) {
+    medium(ui, conditions);
+    ui.add(Slider::new(&mut conditions.sync, 0..=50).text("sync every (0: never)"));
+    let reach = &mut conditions.air.reach;
+    let name = match reach {
         Reach::Everywhere => "everybody".to_owned(),
         Reach::LineOfSight => "in sight".to_owned(),
         Reach::Cells(cells) => format!("{cells} cells"),
@@ -531,18 +535,18 @@ fn radio(ui: &mut Ui, setup: &mut Setup) {
     ComboBox::from_label("hears")
         .selected_text(name)
         .show_ui(ui, |ui| {
-            ui.selectable_value(&mut setup.reach, Reach::Everywhere, "everybody");
-            ui.selectable_value(&mut setup.reach, Reach::LineOfSight, "in sight");
-            let near = matches!(setup.reach, Reach::Cells(_));
+            ui.selectable_value(reach, Reach::Everywhere, "everybody");
+            ui.selectable_value(reach, Reach::LineOfSight, "in sight");
+            let near = matches!(reach, Reach::Cells(_));
             if ui.selectable_label(near, "so many cells").clicked() && !near {
-                setup.reach = Reach::Cells(15);
+                *reach = Reach::Cells(15);
             }
         });
-    if let Reach::Cells(cells) = &mut setup.reach {
+    if let Reach::Cells(cells) = reach {
         ui.add(Slider::new(cells, 1..=100).text("radio range"));
     }
-    if setup.medium == MediumKind::Radio {
-        ui.add(Slider::new(&mut setup.byte_budget, 1..=500).text("bytes/tick"));
-        ui.add(Slider::new(&mut setup.delay, 0..=20).text("ticks late at most"));
+    if conditions.medium == MediumKind::Radio {
+        ui.add(Slider::new(&mut conditions.byte_budget, 1..=500).text("bytes/tick"));
+        ui.add(Slider::new(&mut conditions.air.delay, 0..=20).text("ticks late at most"));
     }
 }

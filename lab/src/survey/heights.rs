@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use egui::Shape;
 use host_sim::draw::{animate, oblique_view, top_view};
-use host_sim::survey::{self, Record, Stepping, Terrain, TerrainSource, Trace};
+use host_sim::run::heights::{self, Stepping};
+use host_sim::survey::{Record, Trace};
+use host_sim::terrain::{Terrain, TerrainSource};
 use image::RgbImage;
 use planner_core::{Cell, Extent, Point};
 
@@ -38,7 +40,7 @@ impl Heights {
             ));
         }
         let terrain = Arc::new(setup.terrain.load(setup.size)?);
-        let run = survey::open(terrain.clone(), &setup.scenario());
+        let run = heights::open(terrain.clone(), &setup.scenario());
         let run = run.map_err(|error| error.to_string())?;
         Ok(Self::with(terrain, Source::Running(run)))
     }

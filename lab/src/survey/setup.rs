@@ -5,9 +5,11 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use host_sim::medium::MediumKind;
-use host_sim::survey::voxels::{self, VoxelTrace};
-use host_sim::survey::{Planner, Scenario, TerrainSource, Trace};
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::{Conditions, MediumKind, voxels};
+use host_sim::survey::Trace;
+use host_sim::survey::voxels::VoxelTrace;
+use host_sim::terrain::TerrainSource;
 
 /// Numbers of drones.
 pub const ROBOTS: RangeInclusive<u8> = 1..=32;
@@ -17,8 +19,6 @@ pub const ALTITUDES: RangeInclusive<f32> = 1.0..=6.0;
 pub const CEILINGS: RangeInclusive<f32> = 20.0..=60.0;
 /// Sensor ranges in cells.
 pub const RANGES: RangeInclusive<u8> = 2..=12;
-/// Steps after which a survey is given up, as by the command.
-const MAX_TICKS: u32 = 20_000;
 
 /// What is flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,12 +37,8 @@ pub struct SurveySetup {
     pub min_altitude: f32,
     /// Greatest height, in cells.
     pub ceiling: f32,
-    /// How drones tell each other what they know.
-    pub medium: MediumKind,
-    /// Share of messages lost.
-    pub loss: f64,
-    /// Seed of the drones' choices.
-    pub seed: u64,
+    /// What all worlds share.
+    pub conditions: Conditions,
 }
 
 impl Default for SurveySetup {
@@ -55,9 +51,10 @@ impl Default for SurveySetup {
             range: 8,
             min_altitude: 2.0,
             ceiling: 40.0,
-            medium: MediumKind::Radio,
-            loss: 0.0,
-            seed: 0,
+            conditions: Conditions {
+                medium: MediumKind::Radio,
+                ..Conditions::flown(0)
+            },
         }
     }
 }
@@ -65,24 +62,20 @@ impl Default for SurveySetup {
 impl SurveySetup {
     /// The scenario over a terrain of heights.
     pub fn scenario(&self) -> Scenario {
-        let mut scenario = Scenario::new(self.planner, self.robots.into(), self.seed);
+        let mut scenario = Scenario::new(self.planner, self.robots.into(), 0);
         scenario.limits.range = self.range.into();
         scenario.limits.min_altitude = self.min_altitude;
         scenario.limits.ceiling = self.ceiling;
-        scenario.medium = self.medium;
-        scenario.loss = self.loss;
-        scenario.max_ticks = MAX_TICKS;
+        scenario.conditions.clone_from(&self.conditions);
         scenario
     }
 
     /// The scenario in a town of voxels.
     pub fn voxel_scenario(&self) -> voxels::Scenario {
         voxels::Scenario {
+            robots: self.robots.into(),
             range: self.range,
-            medium: self.medium,
-            loss: self.loss,
-            max_ticks: MAX_TICKS,
-            ..voxels::Scenario::new(self.robots.into(), self.seed)
+            conditions: self.conditions.clone(),
         }
     }
 
@@ -99,9 +92,7 @@ impl SurveySetup {
             range: limits.range as u8,
             min_altitude: limits.min_altitude,
             ceiling: limits.ceiling,
-            medium: scenario.medium,
-            loss: scenario.loss,
-            seed: scenario.seed,
+            conditions: scenario.conditions.clone(),
         }
     }
 
@@ -120,9 +111,7 @@ impl SurveySetup {
             size,
             robots: scenario.robots.min(255) as u8,
             range: scenario.range,
-            medium: scenario.medium,
-            loss: scenario.loss,
-            seed: scenario.seed,
+            conditions: scenario.conditions.clone(),
             ..Self::default()
         }
     }
@@ -146,7 +135,7 @@ impl SurveySetup {
         16..=if self.is_of_voxels() { 64 } else { 128 }
     }
 
-    /// Every setting that the terrain leaves, as names and values.
+    /// Every setting of its own that the terrain leaves, as names and values.
     fn settings(&self) -> Vec<(&'static str, String)> {
         let mut settings = vec![("size", self.size.to_string())];
         if !self.is_of_voxels() {
@@ -158,9 +147,6 @@ impl SurveySetup {
             settings.push(("min-altitude", self.min_altitude.to_string()));
             settings.push(("ceiling", self.ceiling.to_string()));
         }
-        settings.push(("medium", self.medium.to_string()));
-        settings.push(("loss", self.loss.to_string()));
-        settings.push(("seed", self.seed.to_string()));
         settings
     }
 
@@ -186,6 +172,9 @@ impl SurveySetup {
                 let _ = write!(address, "&{name}={value}");
             }
         }
+        for (name, value) in self.conditions.settings(&usual.conditions) {
+            let _ = write!(address, "&{name}={value}");
+        }
         address
     }
 
@@ -209,10 +198,9 @@ impl SurveySetup {
         }
         let known = setup.settings();
         for (name, value) in parts(address).filter(|(name, _)| *name != "terrain") {
-            if known.iter().all(|(known, _)| *known != name) {
-                return Err(wrong(name, value));
-            }
+            let is_own = known.iter().any(|(known, _)| *known == name);
             let done = match name {
+                _ if !is_own => setup.conditions.set(name, value),
                 "size" => within(value, setup.sizes(), &mut setup.size),
                 "planner" => Planner::from_str(value, true)
                     .ok()
@@ -221,11 +209,6 @@ impl SurveySetup {
                 "range" => within(value, RANGES, &mut setup.range),
                 "min-altitude" => within(value, ALTITUDES, &mut setup.min_altitude),
                 "ceiling" => within(value, CEILINGS, &mut setup.ceiling),
-                "medium" => MediumKind::from_str(value, true)
-                    .ok()
-                    .map(|medium| setup.medium = medium),
-                "loss" => within(value, 0.0..=1.0, &mut setup.loss),
-                "seed" => within(value, 0..=u64::MAX, &mut setup.seed),
                 _ => None,
             };
             done.ok_or_else(|| wrong(name, value))?;
@@ -239,7 +222,9 @@ impl SurveySetup {
             "cargo run --release -- survey --terrain {}",
             self.terrain_name()
         );
-        for (name, value) in self.settings() {
+        let usual = Self::default().conditions;
+        let conditions = self.conditions.settings(&usual);
+        for (name, value) in self.settings().into_iter().chain(conditions) {
             let _ = write!(command, " --{name} {value}");
         }
         command
@@ -278,6 +263,13 @@ fn within<T: FromStr + PartialOrd>(
 pub(super) mod tests {
     use super::*;
 
+    fn conditions() -> Conditions {
+        Conditions {
+            loss: 0.25,
+            ..Conditions::flown(7)
+        }
+    }
+
     pub(in crate::survey) fn unusual() -> SurveySetup {
         SurveySetup {
             terrain: TerrainSource::Urban(3),
@@ -287,9 +279,7 @@ pub(super) mod tests {
             range: 6,
             min_altitude: 1.5,
             ceiling: 50.0,
-            medium: MediumKind::Ideal,
-            loss: 0.25,
-            seed: 7,
+            conditions: conditions(),
         }
     }
 
@@ -299,9 +289,7 @@ pub(super) mod tests {
             size: 24,
             robots: 3,
             range: 6,
-            medium: MediumKind::Ideal,
-            loss: 0.25,
-            seed: 7,
+            conditions: conditions(),
             ..SurveySetup::default()
         }
     }

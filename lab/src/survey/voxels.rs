@@ -2,7 +2,9 @@
 
 use egui::Shape;
 use host_sim::draw::animate;
-use host_sim::survey::voxels::{Scene, Simulation, VoxelTrace};
+use host_sim::run::voxels::Simulation;
+use host_sim::scene::Scene;
+use host_sim::survey::voxels::VoxelTrace;
 use image::RgbImage;
 use planner_core::volume::Voxel;
 use planner_core::{Extent, Point};

@@ -8,8 +8,7 @@ use std::process::Command;
 
 use browser::{Browser, serve};
 use host_sim::chip::{Machine, Swarm};
-use host_sim::run::{self, Options};
-use host_sim::survey;
+use host_sim::run::{self, Options, heights};
 use lab::setup::Setup;
 use lab::survey::{SurveyScene, SurveySetup};
 use serde_json::Value;
@@ -87,7 +86,7 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
     let machine = Machine::Netduinoplus2;
     let swarm = Swarm::new(machine, root().join(machine.image()));
     let terrain = setup.terrain.load(setup.size).unwrap();
-    let chips = survey::run_on(&swarm, &terrain, &setup.scenario()).unwrap();
+    let chips = heights::run_on(&swarm, &terrain, &setup.scenario()).unwrap();
     swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");
     assert_eq!(chips.digest(), here, "{address}");

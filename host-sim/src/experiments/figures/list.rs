@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use crate::experiments::{Place, Plan, Site};
-use crate::medium::MediumKind;
 use crate::planners::PlannerKind::{
     self, Bmilrv, Closest, Explorer, Greedy, LocalFrontiers, LocalFrontiersSecondChance, MinPos,
 };
+use crate::scenario::MediumKind;
 use crate::world::{World, paper};
 
 /// Seed of the labyrinths in `fixtures/maps`, and of all figures.

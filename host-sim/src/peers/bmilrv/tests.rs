@@ -6,8 +6,9 @@ use proptest::prelude::*;
 
 use super::board::Mark;
 use super::{Bmilrv, Marks};
-use crate::fleet::{Death, Faults, Fleet, Rules};
-use crate::medium::{AirFaults, MediumKind};
+use crate::fleet::{Fleet, Rules};
+use crate::medium;
+use crate::scenario::{Conditions, Event, Faults};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate, paper};
 
@@ -35,7 +36,7 @@ impl Watched {
             faults,
         };
         let sensor = Arc::new(Sensor::new(world.clone(), range));
-        let medium = MediumKind::Ideal.build(1, 0.0, AirFaults::default(), 0, world.clone());
+        let medium = medium::build(&Conditions::new(0, 0), world.clone());
         let fleet = Fleet::new(sensor, medium, rules, build, &starts);
         Self {
             marks,
@@ -124,7 +125,7 @@ fn every_robot_ends_at_the_rendezvous_of_the_papers_maps() {
 #[test]
 fn a_robot_that_dies_does_not_stop_the_others() {
     for tick in [5, 150] {
-        let death = Death {
+        let death = Event {
             robot: RobotId(0),
             tick,
         };

@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
 use crate::experiments::Interval;
-use crate::medium::MediumKind;
-use crate::survey::{Planner, SurveyError};
+use crate::scenario::MediumKind;
+use crate::scenario::ScenarioError;
+use crate::scenario::heights::Planner;
 
-pub(super) fn by_robots(terrains: u64) -> Result<Figure, SurveyError> {
+pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
     let fleets = [1, 2, 4, 8, 16];
     let mut rows = Vec::new();
     for planner in METHODS {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Figure, Fleet, ROBOTS, SIDE, point};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Style};
-use crate::survey::Planner;
+use crate::scenario::heights::Planner;
 
 pub(super) fn final_times(fleets: &[Fleet]) -> Figure {
     let mut order: Vec<usize> = (0..fleets[0].runs.len()).collect();

@@ -9,10 +9,14 @@ mod work;
 
 use rayon::prelude::*;
 
-use super::{Planner, Scenario, SurveyError, Terrain, Trace, run};
+use super::Trace;
 use crate::draw::chart::{Chart, Point, Series, Style};
 use crate::experiments::{Interval, mean};
-use crate::medium::MediumKind;
+use crate::run::heights::run;
+use crate::scenario::MediumKind;
+use crate::scenario::ScenarioError;
+use crate::scenario::heights::{Planner, Scenario};
+use crate::terrain::Terrain;
 
 /// The methods that are compared, in the order of the legends.
 const METHODS: [Planner; 6] = [
@@ -52,8 +56,8 @@ pub struct Figure {
 ///
 /// # Errors
 /// None with the set-up used here.
-pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, SurveyError> {
-    let fleets = || -> Result<Vec<Fleet>, SurveyError> {
+pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, ScenarioError> {
+    let fleets = || -> Result<Vec<Fleet>, ScenarioError> {
         METHODS
             .iter()
             .map(|&planner| Fleet::new(Setup::new(planner, ROBOTS), terrains))
@@ -135,13 +139,11 @@ struct Fleet {
 }
 
 impl Fleet {
-    fn new(setup: Setup, terrains: u64) -> Result<Self, SurveyError> {
-        let one = |seed| -> Result<Run, SurveyError> {
-            let scenario = Scenario {
-                medium: setup.medium,
-                loss: setup.loss,
-                ..Scenario::new(setup.planner, setup.robots, seed)
-            };
+    fn new(setup: Setup, terrains: u64) -> Result<Self, ScenarioError> {
+        let one = |seed| -> Result<Run, ScenarioError> {
+            let mut scenario = Scenario::new(setup.planner, setup.robots, seed);
+            scenario.conditions.medium = setup.medium;
+            scenario.conditions.loss = setup.loss;
             let trace = run(&Terrain::gaussian(seed, setup.side), &scenario)?;
             Ok(Run::new(&trace))
         };

@@ -4,10 +4,17 @@ use std::fmt::Write as _;
 
 use super::{Figure, METHODS, colour};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Series, Style};
-use crate::survey::{Planner, Scenario, SurveyError, Terrain, octree, run, voxels};
+use crate::run::heights::run;
+use crate::run::voxels;
+use crate::scenario::ScenarioError;
+use crate::scenario::heights::{Planner, Scenario};
+use crate::scenario::voxels::Scenario as VoxelScenario;
+use crate::scene::Scene;
+use crate::survey::octree;
+use crate::terrain::Terrain;
 
 /// Nodes of the octree of what is mapped, every tenth step.
-pub(super) fn town() -> Result<Figure, SurveyError> {
+pub(super) fn town() -> Result<Figure, ScenarioError> {
     const TOWN: u16 = 80;
     const VOXELS: u16 = 40;
     let mut csv = String::from("planner,tick,nodes\n");
@@ -38,10 +45,7 @@ pub(super) fn town() -> Result<Figure, SurveyError> {
         let nodes = |tick| octree(&trace, tick).nodes();
         heights.push(curve(planner.to_string(), colour(planner), end, &nodes));
     }
-    let trace = voxels::run(
-        &voxels::Scene::town(1, VOXELS),
-        &voxels::Scenario::new(2, 1),
-    )?;
+    let trace = voxels::run(&Scene::town(1, VOXELS), &VoxelScenario::new(2, 1))?;
     let end = trace.ticks_to(1.0).unwrap_or(trace.seen.len() as u32);
     let nodes = |tick| trace.octree(tick).nodes();
     let inside = curve("voxel-survey".into(), METHODS.len(), end, &nodes);

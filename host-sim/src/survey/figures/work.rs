@@ -4,15 +4,15 @@ use std::fmt::Write as _;
 
 use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
-use crate::survey::SurveyError;
+use crate::scenario::ScenarioError;
 
-pub(super) fn work(terrains: u64) -> Result<Figure, SurveyError> {
+pub(super) fn work(terrains: u64) -> Result<Figure, ScenarioError> {
     let sides = [60u16, 100, 150, 200];
     let fleets = [1usize, 2, 4, 8, 16];
     let mut csv = String::from("planner,side,robots,mean_work,max_work\n");
     let mut curves: [Vec<Series>; 2] = Default::default();
     for planner in METHODS {
-        let mut measure = |setups: Vec<Setup>| -> Result<Series, SurveyError> {
+        let mut measure = |setups: Vec<Setup>| -> Result<Series, ScenarioError> {
             let mut points = Vec::new();
             for (place, setup) in setups.into_iter().enumerate() {
                 let fleet = Fleet::new(setup, terrains)?;

@@ -4,14 +4,14 @@
 use std::io::BufRead;
 
 use planner_core::surface::Height;
-use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point};
 
 use super::{FORMAT, Header, Heights, NOWHERE, Record, Row, Trace};
 use crate::fleet::Sent;
 use crate::record::{self, Deed, Objection, Order, Reason, TraceError, wrong};
-use crate::survey::terrain_file::LARGEST;
-use crate::survey::{Kill, Scenario, Terrain, look};
+use crate::scenario::Event;
+use crate::scenario::heights::Scenario;
+use crate::terrain::{LARGEST, Terrain, look};
 
 /// Steps of the longest run that is read: a step without a record is one in which all
 /// robots slept, and a file may claim any number of them.
@@ -39,7 +39,7 @@ impl Trace {
         let mut replay = Replay::new(header)?;
         let mut order = Order {
             robots: replay.at.len(),
-            end: replay.trace.scenario.max_ticks.min(MOST_STEPS),
+            end: replay.trace.scenario.conditions.max_ticks.min(MOST_STEPS),
             last: None,
         };
         let version = lines.version;
@@ -78,27 +78,14 @@ impl Replay {
         let robots = header.starts.len();
         let starts = header.starts.into_iter();
         let starts: Vec<_> = starts.map(|[x, y, z]| Point { x, y, z }).collect();
-        let deaths = header.deaths.into_iter();
         let scenario = Scenario {
             planner: header.planner,
             robots,
-            limits: Limits {
-                range: header.range,
-                step: header.step,
-                min_altitude: header.min_altitude,
-                ceiling: header.ceiling,
-                separation: header.separation,
-            },
-            seed: header.seed,
-            medium: header.medium,
-            byte_budget: header.byte_budget,
-            loss: header.loss,
+            limits: header.limits,
             skip: header.skip,
-            kills: deaths.map(|(robot, step)| Kill { robot, step }).collect(),
-            max_ticks: header.max_ticks,
+            conditions: header.conditions,
         };
-        let checked = scenario.check();
-        checked.map_err(|error| TraceError::Survey(error.to_string()))?;
+        scenario.check()?;
         let terrain = header.world.terrain()?;
         let replay = Self {
             known: vec![false; terrain.extent().cells() as usize],
@@ -165,11 +152,11 @@ impl Replay {
             },
         };
         let robot = usize::from(record.robot);
-        let dies = |kill: &&Kill| kill.robot == robot && kill.step <= record.tick;
-        if let Some(kill) = scenario.kills.iter().find(dies) {
+        let dies = |of: &&Event| of.robot.0 == record.robot && of.tick <= record.tick;
+        if let Some(death) = scenario.conditions.faults.deaths.iter().find(dies) {
             let expected = format!(
                 "a robot that lives; robot {robot} dies before step {}",
-                kill.step
+                death.tick
             );
             return Err(wrong(expected, format!("tick {}", record.tick)));
         }
@@ -245,11 +232,11 @@ impl Replay {
 
     /// The robots that live in this step.
     fn alive(&self, tick: u32) -> impl Iterator<Item = usize> + '_ {
-        let kills = &self.trace.scenario.kills;
+        let deaths = &self.trace.scenario.conditions.faults.deaths;
         let lives = move |robot: &usize| {
-            !kills
+            !deaths
                 .iter()
-                .any(|kill| kill.robot == *robot && kill.step <= tick)
+                .any(|of| usize::from(of.robot.0) == *robot && of.tick <= tick)
         };
         (0..self.at.len()).filter(lives)
     }
@@ -282,8 +269,9 @@ mod tests {
     use planner_core::Stop;
 
     use super::*;
-    use crate::medium::MediumKind;
-    use crate::survey::{Planner, run};
+    use crate::run::heights::run;
+    use crate::scenario::MediumKind;
+    use crate::scenario::heights::Planner;
 
     /// The first version had two reasons the other way round.
     #[test]
@@ -325,13 +313,11 @@ mod tests {
     /// A run in which robots die and sleep, and messages are lost.
     fn trace(planner: Planner) -> Trace {
         let terrain = Terrain::urban(3, 24);
-        let scenario = Scenario {
-            medium: MediumKind::Radio,
-            loss: 0.3,
-            skip: 0.2,
-            kills: vec![Kill { robot: 1, step: 9 }],
-            ..Scenario::new(planner, 3, 5)
-        };
+        let mut scenario = Scenario::new(planner, 3, 5);
+        scenario.skip = 0.2;
+        scenario.conditions.medium = MediumKind::Radio;
+        scenario.conditions.loss = 0.3;
+        scenario.conditions.faults.deaths = vec![Event::from((1, 9))];
         run(&terrain, &scenario).unwrap()
     }
 
@@ -410,7 +396,7 @@ mod tests {
 
         let mut dead = good.clone();
         let last = dead.records.iter().rposition(|it| it.robot == 1).unwrap();
-        dead.scenario.kills[0].step = dead.records[last].tick;
+        dead.scenario.conditions.faults.deaths[0].tick = dead.records[last].tick;
         let error = Trace::read(text(&dead).as_bytes()).unwrap_err().to_string();
         assert!(error.contains(&format!("line {}", last + 3)), "{error}");
         assert!(error.contains("robot 1 dies"), "{error}");
@@ -419,7 +405,7 @@ mod tests {
     #[test]
     fn a_run_of_ever_so_many_steps_is_not_believed() {
         let mut long = trace(Planner::Fcao);
-        long.scenario.max_ticks = u32::MAX;
+        long.scenario.conditions.max_ticks = u32::MAX;
         long.records.last_mut().unwrap().tick = u32::MAX - 1;
         let error = Trace::read(text(&long).as_bytes()).unwrap_err().to_string();
         assert!(error.contains("a tick before 10000000"), "{error}");

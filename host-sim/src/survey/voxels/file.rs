@@ -12,11 +12,12 @@ use planner_core::volume::Voxel;
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
-use super::run::{Scenario, VoxelTrace, look, visible};
-use super::scene::{LARGEST, LEVELS, Scene};
+use super::VoxelTrace;
 use crate::fleet::Sent;
 use crate::record::{self, Deed, Format, Objection, Order, TraceError, wrong};
-use crate::survey::error::SurveyError;
+use crate::scenario::ScenarioError;
+use crate::scenario::voxels::Scenario;
+use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
 
 const FORMAT: Format = Format {
     name: "host-sim voxel trace",
@@ -166,8 +167,7 @@ impl VoxelTrace {
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
         let (header, lines) = record::read::<Header, Row>(from, FORMAT)?;
         let (scene, scenario) = (header.world.scene()?, header.scenario);
-        let checked = scenario.check(&scene);
-        checked.map_err(|error| TraceError::Survey(error.to_string()))?;
+        scenario.check(&scene)?;
         let robots = scenario.robots;
         let of_robots = |what, count| match count == robots {
             true => Ok(()),
@@ -186,7 +186,7 @@ impl VoxelTrace {
         }
         let mut order = Order {
             robots,
-            end: scenario.max_ticks.saturating_add(1),
+            end: scenario.conditions.max_ticks.saturating_add(1),
             last: None,
         };
         let mut empty_steps = 0u32;
@@ -217,7 +217,7 @@ impl VoxelTrace {
         }
         trace.look_again();
         match trace.visible {
-            0 => Err(TraceError::Survey(SurveyError::NothingToSee.to_string())),
+            0 => Err(ScenarioError::NothingToSee.into()),
             _ => Ok(trace),
         }
     }
@@ -329,15 +329,13 @@ impl Levels {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::survey::voxels::{Simulation, run};
+    use crate::run::voxels::{Simulation, run};
 
     fn trace(max_ticks: u32) -> VoxelTrace {
-        let scenario = Scenario {
-            range: 6,
-            loss: 0.3,
-            max_ticks,
-            ..Scenario::new(2, 4)
-        };
+        let mut scenario = Scenario::new(2, 4);
+        scenario.range = 6;
+        scenario.conditions.loss = 0.3;
+        scenario.conditions.max_ticks = max_ticks;
         run(&Scene::town(1, 28), &scenario).unwrap()
     }
 

@@ -1,9 +1,7 @@
-//! Fleets of flying robots in boxes of voxels: streets, undersides, rooms.
+//! What fleets of flying robots leave behind in scenes of voxels.
 
 mod file;
-mod run;
-mod scene;
+mod trace;
 
 pub use file::Record;
-pub use run::{Scenario, Simulation, VoxelTrace, look, run};
-pub use scene::Scene;
+pub use trace::VoxelTrace;

@@ -1,9 +1,15 @@
-//! Worlds of voxels.
+//! Worlds of voxels: streets, undersides, rooms.
+
+mod look;
+pub mod octree;
 
 use planner_core::Extent;
 use planner_core::volume::Voxel;
 
 use crate::dice::Dice;
+
+pub use look::look;
+pub(crate) use look::visible;
 
 /// A box of voxels; voxels of one cell's side.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,9 +21,9 @@ pub struct Scene {
 }
 
 /// Columns along a side of the largest scene.
-pub(super) const LARGEST: u16 = 64;
+pub(crate) const LARGEST: u16 = 64;
 /// Levels of the highest scene.
-pub(super) const LEVELS: u8 = 24;
+pub(crate) const LEVELS: u8 = 24;
 
 impl Scene {
     /// A scene in which `is_occupied` says where something is.

@@ -10,12 +10,12 @@ use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
 use thiserror::Error;
 
+use super::Terrain;
 use super::foreign::foreign;
-use super::octree::{Cube, MAGIC, OcTree};
-use super::terrain::Terrain;
+use crate::scene::octree::{Cube, MAGIC, OcTree};
 
 /// Columns along the longest side of a map.
-pub(super) const LARGEST: u32 = 512;
+pub(crate) const LARGEST: u32 = 512;
 
 /// Most bytes of a file that is read.
 const MOST_BYTES: u64 = 64 << 20;

@@ -1,22 +1,55 @@
-//! Surveys that cannot be flown, and why.
+//! Scenarios that cannot be run, and why.
 
-use planner_core::Extent;
-use planner_core::ExtentError;
 use planner_core::survey::SetupError;
+use planner_core::{Cell, Extent, ExtentError};
 use thiserror::Error;
 
-/// A survey that cannot be flown, said so that the reader can mend it.
+use crate::planners::PlannerKind;
+use crate::sensor::ALL_AROUND;
+
+/// A scenario that cannot be run, said so that the reader can mend it.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // each variant's message is its documentation
-pub enum SurveyError {
+pub enum ScenarioError {
     #[error("--{option} {found}: expected {expected}")]
     Setting {
         option: &'static str,
         found: String,
         expected: String,
     },
-    #[error("--kill: there is no robot {robot}; robots are numbered 0 to {last}")]
-    NoSuchRobot { robot: usize, last: usize },
+    #[error("--{option}: there is no robot {robot}; robots are numbered 0 to {last}")]
+    NoSuchRobot {
+        option: &'static str,
+        robot: u8,
+        last: usize,
+    },
+    #[error("--{0} only works on frames: choose --medium radio, or leave it out")]
+    NoFrames(&'static str),
+    #[error("--{option} does not apply {world}; leave it out")]
+    NotHere {
+        option: &'static str,
+        /// Where: `over a terrain of heights`.
+        world: &'static str,
+    },
+    #[error(
+        "planner {planner} never turns its sensor, and needs a field of view of {ALL_AROUND} \
+         degrees, not {fov}; the explorer turns it"
+    )]
+    NeverTurns { planner: PlannerKind, fov: u16 },
+    #[error("robot {robot} starts at {start}, which is no free cell of the world")]
+    Start { robot: usize, start: Cell },
+    #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]
+    SharedStart {
+        first: usize,
+        second: usize,
+        start: Cell,
+    },
+    #[error("--{option} {cell}: outside of the map of {extent} cells")]
+    FaultOutside {
+        option: &'static str,
+        cell: Cell,
+        extent: Extent,
+    },
     #[error(
         "{robots} robots do not fit: they start from column 2, row 2 on, two columns apart, and \
          the terrain has {extent} columns; {}", most_robots(*.most)
@@ -61,9 +94,9 @@ pub enum SurveyError {
     Extent(#[from] ExtentError),
 }
 
-impl SurveyError {
+impl ScenarioError {
     /// An option with a value that it cannot have.
-    pub(super) fn setting(
+    pub(crate) fn setting(
         option: &'static str,
         found: impl ToString,
         expected: impl Into<String>,
@@ -80,21 +113,5 @@ fn most_robots(most: usize) -> String {
     match most {
         0 => "expected 3×3 columns or more".into(),
         _ => format!("expected --robots {most} or fewer, or a larger terrain"),
-    }
-}
-
-/// A share that is one.
-pub(super) fn check_share(option: &'static str, share: f64) -> Result<(), SurveyError> {
-    match (0.0..=1.0).contains(&share) {
-        true => Ok(()),
-        false => Err(SurveyError::setting(option, share, "a share from 0 to 1")),
-    }
-}
-
-/// A number of robots that have a number each.
-pub(super) fn check_robots(robots: usize) -> Result<(), SurveyError> {
-    match (1..=255).contains(&robots) {
-        true => Ok(()),
-        false => Err(SurveyError::setting("robots", robots, "1 to 255")),
     }
 }

@@ -1,4 +1,4 @@
-//! A run: sense, share, decide in turn, fly; until every living robot has stopped.
+//! Runs over a terrain of heights: sense, share, decide in turn, fly; until every living robot has stopped.
 
 use std::sync::Arc;
 #[cfg(not(target_arch = "wasm32"))]
@@ -7,21 +7,19 @@ use std::time::Instant;
 use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
-use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::radio::MAX_LEN;
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
 
-use super::baselines::{Follower, Guide, Rounds, assign};
-use super::error::SurveyError;
-use super::scenario::{Planner, Scenario};
-use super::sensor::look;
-use super::terrain::Terrain;
-use super::trace::{Record, Safety, Trace};
 use crate::dice::Dice;
 use crate::fleet::Sent;
-use crate::medium::MediumKind;
 use crate::record::Deed;
+use crate::scenario::heights::{Planner, Scenario};
+use crate::scenario::{Faults, MediumKind, ScenarioError};
+use crate::survey::baselines::{Follower, Guide, Rounds, assign};
+use crate::survey::{Record, Safety, Trace};
+use crate::terrain::{Terrain, look};
 
 /// Where the planners of a survey are.
 pub trait Host {
@@ -67,7 +65,7 @@ impl Host for Here {
 ///
 /// # Errors
 /// A setting is out of its range, or the robots do not fit over the terrain.
-pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, SurveyError> {
+pub fn run(terrain: &Terrain, scenario: &Scenario) -> Result<Trace, ScenarioError> {
     run_on(&Here, terrain, scenario)
 }
 
@@ -79,7 +77,7 @@ pub fn run_on(
     host: &impl Host,
     terrain: &Terrain,
     scenario: &Scenario,
-) -> Result<Trace, SurveyError> {
+) -> Result<Trace, ScenarioError> {
     let mut run = open_on(host, Arc::new(terrain.clone()), scenario)?;
     while !host.has_failed() && run.step() {}
     Ok(run.finish())
@@ -89,7 +87,10 @@ pub fn run_on(
 ///
 /// # Errors
 /// As [`run`].
-pub fn open(terrain: Arc<Terrain>, scenario: &Scenario) -> Result<Box<dyn Stepping>, SurveyError> {
+pub fn open(
+    terrain: Arc<Terrain>,
+    scenario: &Scenario,
+) -> Result<Box<dyn Stepping>, ScenarioError> {
     open_on(&Here, terrain, scenario)
 }
 
@@ -97,7 +98,7 @@ fn open_on(
     host: &impl Host,
     terrain: Arc<Terrain>,
     scenario: &Scenario,
-) -> Result<Box<dyn Stepping>, SurveyError> {
+) -> Result<Box<dyn Stepping>, ScenarioError> {
     scenario.check()?;
     let Extent { width, height } = terrain.extent();
     Ok(match width.max(height).div_ceil(8) {
@@ -179,7 +180,7 @@ impl<const T: usize> Simulation<T> {
         host: &impl Host,
         terrain: Arc<Terrain>,
         scenario: &Scenario,
-    ) -> Result<Self, SurveyError> {
+    ) -> Result<Self, ScenarioError> {
         let extent = terrain.extent();
         let starts = scenario.starts(&terrain)?;
         let robots = starts
@@ -204,19 +205,16 @@ impl<const T: usize> Simulation<T> {
             scenario: scenario.clone(),
             robots,
             union: Box::new(Surface::new(extent).map_err(SetupError::from)?),
-            dice: Dice::new(scenario.seed),
+            dice: Dice::new(scenario.conditions.seed),
             now: 0,
         })
     }
 
     /// One step of the fleet; says whether there is another.
     fn advance(&mut self) -> bool {
-        for kill in &self.scenario.kills {
-            if kill.step == self.now
-                && let Some(robot) = self.robots.get_mut(kill.robot)
-            {
-                robot.alive = false;
-            }
+        let deaths = &self.scenario.conditions.faults.deaths;
+        for (robot, id) in self.robots.iter_mut().zip(0..) {
+            robot.alive &= !Faults::befalls(deaths, RobotId(id), self.now);
         }
         for i in 0..self.robots.len() {
             self.robots[i].awake = self.robots[i].alive && !self.dice.happens(self.scenario.skip);
@@ -229,7 +227,7 @@ impl<const T: usize> Simulation<T> {
             .iter()
             .any(|robot| robot.alive && !robot.stopped);
         self.trace.all_stopped = !going;
-        if !going || self.now >= self.scenario.max_ticks {
+        if !going || self.now >= self.scenario.conditions.max_ticks {
             return false;
         }
         let orders = self.orders();
@@ -257,10 +255,10 @@ impl<const T: usize> Simulation<T> {
 
     /// What everybody has to say to everybody, before anybody decides.
     fn share(&mut self) {
-        match self.scenario.medium {
+        match self.scenario.conditions.medium {
             MediumKind::Ideal => self.share_maps(),
             MediumKind::Radio => {
-                let frames = usize::from(self.scenario.byte_budget) / MAX_LEN;
+                let frames = usize::from(self.scenario.conditions.byte_budget) / MAX_LEN;
                 // One is left for after the flight.
                 for i in 0..self.robots.len() {
                     self.robots[i].sent = Sent::default();
@@ -282,7 +280,7 @@ impl<const T: usize> Simulation<T> {
             self.robots[i].sent.frames += 1;
             self.robots[i].sent.bytes += length as u32;
             for to in (0..self.robots.len()).filter(|&to| to != i) {
-                if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
+                if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
                     let heard = self.robots[to].pilot.get_mut().receive(&frame[..length]);
                     heard.expect("robots understand each other");
                 }
@@ -307,7 +305,7 @@ impl<const T: usize> Simulation<T> {
                 continue;
             };
             for to in (0..self.robots.len()).filter(|&to| to != from) {
-                if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
+                if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
                     let pilot = self.robots[to].pilot.get_mut();
                     pilot.hear(RobotId(from as u8), *status);
                     for patch in patches {
@@ -372,11 +370,11 @@ impl<const T: usize> Simulation<T> {
         };
         self.robots[i].stopped = self.trace.stops[i].is_some();
         let status = self.robots[i].pilot.get().status();
-        match self.scenario.medium {
+        match self.scenario.conditions.medium {
             MediumKind::Radio => self.transmit(i, 1),
             MediumKind::Ideal => {
                 for to in (0..self.robots.len()).filter(|&to| to != i) {
-                    if self.robots[to].awake && !self.dice.happens(self.scenario.loss) {
+                    if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
                         self.robots[to]
                             .pilot
                             .get_mut()
@@ -425,7 +423,7 @@ impl<const T: usize> Simulation<T> {
 const TOLERANCE: f32 = 1e-3;
 
 impl Safety {
-    pub(super) fn check_flight(
+    pub(crate) fn check_flight(
         &mut self,
         terrain: &Terrain,
         limits: &Limits,
@@ -442,7 +440,7 @@ impl Safety {
     }
 
     /// Given where the living robots are.
-    pub(super) fn check_separation(&mut self, limits: &Limits, alive: &[Point]) {
+    pub(crate) fn check_separation(&mut self, limits: &Limits, alive: &[Point]) {
         for (i, a) in alive.iter().enumerate() {
             for b in &alive[i + 1..] {
                 let near = a.distance(*b) < limits.separation - TOLERANCE;
@@ -459,10 +457,7 @@ fn pilot<const T: usize>(
     id: RobotId,
 ) -> Result<Pilot<T>, SetupError> {
     let limits = scenario.limits;
-    let link = LinkConfig {
-        bytes_per_tick: scenario.byte_budget,
-        ..LinkConfig::new()
-    };
+    let link = scenario.conditions.link();
     let follower = |guide| -> Result<Pilot<T>, SetupError> {
         let follower = Follower::new(extent, limits, link, id, guide)?;
         Ok(Pilot::Follower(Box::new(follower)))
@@ -480,7 +475,7 @@ fn pilot<const T: usize>(
                 limits,
                 link,
                 choice,
-                seed: scenario.seed,
+                seed: scenario.conditions.seed,
             };
             let planner = SurveyorConfig::Coordinated(config);
             Pilot::Other(host.surveyor(extent, limits, planner, id)?)
@@ -488,7 +483,7 @@ fn pilot<const T: usize>(
         Planner::Fcao => {
             let config = fcao::Config {
                 link,
-                ..fcao::Config::new(limits, scenario.seed)
+                ..fcao::Config::new(limits, scenario.conditions.seed)
             };
             let planner = SurveyorConfig::Fcao(config);
             Pilot::Other(host.surveyor(extent, limits, planner, id)?)

@@ -1,9 +1,19 @@
 //! Worlds of one height per column.
 
+mod file;
+mod foreign;
+mod look;
+mod source;
+
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
 
 use crate::dice::Dice;
+
+pub(crate) use file::LARGEST;
+pub use file::TerrainError;
+pub use look::look;
+pub use source::TerrainSource;
 
 /// A height field; heights in cells.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use super::terrain::Terrain;
-use super::voxels::Scene;
+use super::Terrain;
+use crate::scene::Scene;
 
 /// Where a terrain comes from.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,11 +1,12 @@
-//! What a run is a pure function of.
+//! Surveys of a terrain of heights.
 
+use clap::ValueEnum;
 use planner_core::survey::{Limits, MAX_RANGE};
 use planner_core::{Cell, Extent, Point};
+use serde::{Deserialize, Serialize};
 
-use super::error::{SurveyError, check_robots, check_share};
-use super::terrain::Terrain;
-use crate::medium::MediumKind;
+use super::{Conditions, ScenarioError, check_share};
+use crate::terrain::Terrain;
 
 /// Shortest and longest step in cells: with a shorter one a robot gives up on its way
 /// across the largest terrain.
@@ -15,13 +16,8 @@ const HIGHEST: f32 = 500.0;
 /// Columns between two starts, and of the first from the edge.
 const APART: usize = 2;
 
-/// Ten frames of 55 bytes in a step: with 30 % of them lost, eight robots take hardly longer.
-pub const DEFAULT_BYTE_BUDGET: u16 = 550;
-
 /// How the robots decide.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize, serde::Deserialize,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Planner {
     /// Pockets, a local choice on the map, coordinated frontiers: the best.
@@ -41,58 +37,26 @@ pub enum Planner {
 
 impl std::fmt::Display for Planner {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let value = clap::ValueEnum::to_possible_value(self).expect("no value is skipped");
+        let value = self.to_possible_value().expect("no value is skipped");
         f.write_str(value.get_name())
     }
 }
 
-/// A robot that dies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Kill {
-    /// Which.
-    pub robot: usize,
-    /// Before which step.
-    pub step: u32,
-}
-
-impl std::str::FromStr for Kill {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parse = || {
-            let (robot, step) = text.split_once('@')?;
-            Some(Self {
-                robot: robot.parse().ok()?,
-                step: step.parse().ok()?,
-            })
-        };
-        parse().ok_or_else(|| format!("expected ROBOT@STEP, for example 3@40, not {text:?}"))
-    }
-}
-
 /// Everything about a run but the terrain.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scenario {
     /// How the robots decide.
     pub planner: Planner,
     /// Number of robots, 1 to 255.
     pub robots: usize,
     /// The fleet's physics.
+    #[serde(flatten)]
     pub limits: Limits,
-    /// Seed of planners and faults.
-    pub seed: u64,
-    /// What carries what robots tell each other.
-    pub medium: MediumKind,
-    /// Bytes that a robot may send by radio in a step on average.
-    pub byte_budget: u16,
-    /// Share of the messages that are lost, each on its own.
-    pub loss: f64,
     /// Share of a robot's steps that it sleeps through.
     pub skip: f64,
-    /// Robots that die.
-    pub kills: Vec<Kill>,
-    /// Steps after which the run is given up.
-    pub max_ticks: u32,
+    /// What all worlds share.
+    #[serde(flatten)]
+    pub conditions: Conditions,
 }
 
 impl Scenario {
@@ -110,13 +74,8 @@ impl Scenario {
             planner,
             robots,
             limits,
-            seed,
-            medium: MediumKind::Ideal,
-            byte_budget: DEFAULT_BYTE_BUDGET,
-            loss: 0.0,
             skip: 0.0,
-            kills: Vec::new(),
-            max_ticks: 20_000,
+            conditions: Conditions::flown(seed),
         }
     }
 
@@ -124,7 +83,7 @@ impl Scenario {
     ///
     /// # Errors
     /// The first setting that is out of its range, and the range.
-    pub fn check(&self) -> Result<(), SurveyError> {
+    pub fn check(&self) -> Result<(), ScenarioError> {
         let Limits {
             range,
             step,
@@ -132,12 +91,12 @@ impl Scenario {
             ceiling,
             separation,
         } = self.limits;
-        check_robots(self.robots)?;
-        check_share("loss", self.loss)?;
+        self.conditions.check(self.robots)?;
+        self.conditions.check_flown("over a terrain of heights")?;
         check_share("skip", self.skip)?;
         let within = |option, found: f32, is_good: bool, expected: String| match is_good {
             true => Ok(()),
-            false => Err(SurveyError::setting(option, found, expected)),
+            false => Err(ScenarioError::setting(option, found, expected)),
         };
         within(
             "range",
@@ -168,14 +127,7 @@ impl Scenario {
             separation,
             (0.0..=APART as f32).contains(&separation),
             format!("0 to {APART} cells, as starts are {APART} apart"),
-        )?;
-        match self.kills.iter().find(|kill| kill.robot >= self.robots) {
-            Some(kill) => Err(SurveyError::NoSuchRobot {
-                robot: kill.robot,
-                last: self.robots - 1,
-            }),
-            None => Ok(()),
-        }
+        )
     }
 
     /// Where the robots start: in the north-west corner, two cells apart, row by row of
@@ -183,10 +135,10 @@ impl Scenario {
     ///
     /// # Errors
     /// They do not fit into the terrain, or under the ceiling; and what would.
-    pub fn starts(&self, terrain: &Terrain) -> Result<Vec<Point>, SurveyError> {
+    pub fn starts(&self, terrain: &Terrain) -> Result<Vec<Point>, ScenarioError> {
         let extent = terrain.extent();
         if !fit(self.robots, extent) {
-            return Err(SurveyError::NoRoom {
+            return Err(ScenarioError::NoRoom {
                 robots: self.robots,
                 extent,
                 most: (1..self.robots)
@@ -203,7 +155,7 @@ impl Scenario {
             .collect();
         let ceiling = self.limits.ceiling;
         match starts.iter().position(|start| start.z > ceiling) {
-            Some(robot) => Err(SurveyError::StartTooHigh {
+            Some(robot) => Err(ScenarioError::StartTooHigh {
                 robot,
                 height: starts[robot].z,
                 ceiling,
@@ -264,7 +216,7 @@ mod tests {
     #[test]
     fn what_would_fit_is_said_and_fits() {
         let terrain = flat(8, 8, 0);
-        let Err(SurveyError::NoRoom { most, .. }) = scenario(16).starts(&terrain) else {
+        let Err(ScenarioError::NoRoom { most, .. }) = scenario(16).starts(&terrain) else {
             panic!("16 robots start in 8×8 columns");
         };
         assert_eq!(most, 9);
@@ -273,7 +225,7 @@ mod tests {
 
         let high = flat(8, 8, 255);
         let mut scenario = scenario(4);
-        let Err(SurveyError::StartTooHigh { needed, .. }) = scenario.starts(&high) else {
+        let Err(ScenarioError::StartTooHigh { needed, .. }) = scenario.starts(&high) else {
             panic!("robots start above the ceiling");
         };
         scenario.limits.ceiling = needed;
@@ -302,7 +254,10 @@ mod tests {
                 &["--ceiling", "at most 500"],
             );
             bad(&|it| it.limits.separation = number, &["--separation"]);
-            bad(&|it| it.loss = number.into(), &["--loss", "0 to 1"]);
+            bad(
+                &|it| it.conditions.loss = number.into(),
+                &["--loss", "0 to 1"],
+            );
             bad(&|it| it.skip = number.into(), &["--skip", "0 to 1"]);
         }
         bad(&|it| it.limits.range = 0.0, &["--range", "above 0"]);
@@ -310,7 +265,10 @@ mod tests {
         bad(&|it| it.limits.min_altitude = 8.0, &["range of 8"]);
         bad(&|it| it.robots = 0, &["--robots 0", "1 to 255"]);
         bad(&|it| it.robots = 256, &["--robots 256"]);
-        let kill = Kill { robot: 2, step: 3 };
-        bad(&|it| it.kills = vec![kill], &["no robot 2", "0 to 1"]);
+        let kill = "2@3".parse().unwrap();
+        bad(
+            &|it| it.conditions.faults.deaths = vec![kill],
+            &["--kill", "no robot 2", "0 to 1"],
+        );
     }
 }

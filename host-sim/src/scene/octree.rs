@@ -15,7 +15,7 @@ const DEPTH: u32 = 16;
 const CENTRE: i32 = 1 << (DEPTH - 1);
 
 /// First line of a `.bt` file.
-pub(super) const MAGIC: &str = "# Octomap OcTree binary file";
+pub(crate) const MAGIC: &str = "# Octomap OcTree binary file";
 
 /// Most bytes of a header that is read.
 const LONGEST_HEADER: u64 = 4096;

@@ -3,7 +3,7 @@
 use planner_core::surface::{Column, in_sight};
 use planner_core::{Cell, Point};
 
-use super::terrain::Terrain;
+use super::Terrain;
 
 /// The columns that `eye` sees within `range` cells [Renzaglia2019 §3].
 pub fn look(terrain: &Terrain, eye: Point, range: f32) -> Vec<Column> {

@@ -1,0 +1,184 @@
+//! Runs in a grid of cells.
+
+use std::sync::Arc;
+
+use planner_core::{Extent, Planner};
+
+use super::{Outcome, Progress, Running, Stepping};
+use crate::fleet::{Fleet, Rules};
+use crate::medium;
+use crate::peers::{Bmilrv, Marks};
+use crate::planners::{PlannerKind, Setup};
+use crate::scenario::ScenarioError;
+use crate::scenario::grid::Scenario;
+use crate::sensor::Sensor;
+use crate::trace::Trace;
+
+/// How a scenario is run; changes nothing of what happens.
+#[derive(Default)]
+pub struct Options<'a> {
+    /// A sensor of the scenario's world, range and field of view that other runs have filled.
+    pub sensor: Option<Arc<Sensor>>,
+    /// Whether a trace is kept.
+    pub trace: bool,
+    /// Called after every tick.
+    pub progress: Option<&'a mut dyn FnMut(Progress)>,
+}
+
+/// Where the planners of a run are.
+pub trait Host: Clone + 'static {
+    /// The planner of a robot.
+    ///
+    /// # Panics
+    /// If the grid does not fit a map of `TW`×`TH` tiles.
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        kind: PlannerKind,
+        setup: Setup,
+    ) -> Box<dyn Planner<TW, TH>>;
+
+    /// Whether the run has to end because a planner is lost.
+    fn has_failed(&self) -> bool;
+}
+
+/// In this process.
+#[derive(Clone, Copy, Debug)]
+pub struct Here;
+
+impl Host for Here {
+    fn planner<const TW: usize, const TH: usize>(
+        &self,
+        kind: PlannerKind,
+        setup: Setup,
+    ) -> Box<dyn Planner<TW, TH>> {
+        kind.build(setup)
+            .expect("the compiled size holds the world")
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
+/// Runs a scenario until every living robot has stopped or time is up.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn run(
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+    run_on(&Here, scenario, options)
+}
+
+/// A scenario before its first tick, for whoever wants to watch: the same run tick
+/// by tick, with a trace. `sensor` is one of the scenario's, if there is one already.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn open(
+    scenario: &Scenario,
+    sensor: Option<Arc<Sensor>>,
+) -> Result<Box<dyn Stepping>, ScenarioError> {
+    scenario.check()?;
+    let Extent { width, height } = scenario.world.extent();
+    Ok(match width.max(height) {
+        0..=32 => Box::new(Running::<4, 4>::new(&Here, scenario, sensor, true)),
+        33..=64 => Box::new(Running::<8, 8>::new(&Here, scenario, sensor, true)),
+        65..=128 => Box::new(Running::<16, 16>::new(&Here, scenario, sensor, true)),
+        129..=256 => Box::new(Running::<32, 32>::new(&Here, scenario, sensor, true)),
+        _ => Box::new(Running::<64, 64>::new(&Here, scenario, sensor, true)),
+    })
+}
+
+/// As [`run`], with planners that are elsewhere.
+///
+/// # Errors
+/// A scenario out of range.
+pub fn run_on(
+    host: &impl Host,
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+    scenario.check()?;
+    let Extent { width, height } = scenario.world.extent();
+    Ok(match width.max(height) {
+        0..=32 => compiled_on::<4, 4>(host, scenario, options),
+        33..=64 => compiled_on::<8, 8>(host, scenario, options),
+        65..=128 => compiled_on::<16, 16>(host, scenario, options),
+        129..=256 => compiled_on::<32, 32>(host, scenario, options),
+        _ => compiled_on::<64, 64>(host, scenario, options),
+    })
+}
+
+/// The fleet of a scenario before its first tick, on maps of `TW`×`TH` tiles.
+///
+/// # Panics
+/// If the world does not fit maps of this size.
+pub fn fleet<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    sensor: Arc<Sensor>,
+) -> Fleet<TW, TH> {
+    fleet_on(&Here, scenario, sensor)
+}
+
+pub(super) fn fleet_on<const TW: usize, const TH: usize>(
+    host: &impl Host,
+    scenario: &Scenario,
+    sensor: Arc<Sensor>,
+) -> Fleet<TW, TH> {
+    let rules = Rules {
+        solid: scenario.solid,
+        faults: scenario.conditions.faults.clone(),
+    };
+    let link = scenario.conditions.link();
+    let (host, kind) = (host.clone(), scenario.planner);
+    let extent = scenario.world.extent();
+    // Robots that work by marks share them, and meet where the first one starts.
+    let marks = match (kind, scenario.starts.first()) {
+        (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
+        _ => None,
+    };
+    let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
+        if let Some(marks) = &marks {
+            let robot = Bmilrv::new(marks.clone(), id, extent, start, link);
+            return Box::new(robot.expect("the compiled size holds the world"));
+        }
+        let setup = Setup {
+            id,
+            extent,
+            start,
+            link,
+        };
+        host.planner(kind, setup)
+    });
+    let medium = medium::build(&scenario.conditions, scenario.world.clone());
+    Fleet::new(sensor, medium, rules, build, &scenario.starts)
+}
+
+/// Runs a checked scenario with maps of `TW`×`TH` tiles. The result does not
+/// depend on them.
+///
+/// # Panics
+/// If the world does not fit maps of this size.
+pub fn run_compiled<const TW: usize, const TH: usize>(
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> (Outcome, Option<Trace>) {
+    compiled_on::<TW, TH>(&Here, scenario, options)
+}
+
+fn compiled_on<const TW: usize, const TH: usize>(
+    host: &impl Host,
+    scenario: &Scenario,
+    options: Options<'_>,
+) -> (Outcome, Option<Trace>) {
+    let mut running = Running::<TW, TH>::new(host, scenario, options.sensor, options.trace);
+    let mut progress = options.progress;
+    while !host.has_failed() && running.tick() {
+        if let Some(progress) = &mut progress {
+            progress(running.progress());
+        }
+    }
+    running.end()
+}

@@ -1,0 +1,62 @@
+//! Surveys of a scene of voxels.
+
+use planner_core::voxel_survey::MAX_RANGE;
+use serde::{Deserialize, Serialize};
+
+use super::{Conditions, ScenarioError};
+use crate::scene::{LARGEST, LEVELS, Scene};
+
+/// What a run is a function of, beside the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scenario {
+    /// Number of robots, 1 to 255.
+    pub robots: usize,
+    /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
+    pub range: u8,
+    /// What all worlds share.
+    #[serde(flatten)]
+    pub conditions: Conditions,
+}
+
+impl Scenario {
+    /// Range 8, no losses, and robots that share everything at once.
+    pub fn new(robots: usize, seed: u64) -> Self {
+        Self {
+            robots,
+            range: 8,
+            conditions: Conditions::flown(seed),
+        }
+    }
+
+    /// Whether the scenario can be flown in `scene`.
+    ///
+    /// # Errors
+    /// The first setting that is out of its range, and the range.
+    pub fn check(&self, scene: &Scene) -> Result<(), ScenarioError> {
+        self.conditions.check(self.robots)?;
+        let world = "in a town of voxels";
+        self.conditions.check_flown(world)?;
+        if !self.conditions.faults.deaths.is_empty() {
+            let option = "kill";
+            return Err(ScenarioError::NotHere { option, world });
+        }
+        if !(2..=MAX_RANGE).contains(&self.range) {
+            let expected = format!("2 to {MAX_RANGE} voxels");
+            return Err(ScenarioError::setting("range", self.range, expected));
+        }
+        let (extent, levels) = (scene.extent(), scene.levels());
+        let sides = 1..=LARGEST;
+        let fits = sides.contains(&extent.width)
+            && sides.contains(&extent.height)
+            && (1..=LEVELS).contains(&levels);
+        match fits {
+            true => Ok(()),
+            false => Err(ScenarioError::Scene {
+                extent,
+                levels,
+                side: LARGEST,
+                most: LEVELS,
+            }),
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! What a run among voxels leaves behind.
+
+use planner_core::volume::Voxel;
+use planner_core::{Point, Stop};
+
+use super::Record;
+use crate::draw::{Block, oblique};
+use crate::scenario::voxels::Scenario;
+use crate::scene::Scene;
+use crate::scene::octree::OcTree;
+
+/// A whole run.
+#[derive(Clone, Debug)]
+pub struct VoxelTrace {
+    /// What was run.
+    pub scenario: Scenario,
+    /// Where.
+    pub scene: Scene,
+    /// Where each robot was, step by step from its start.
+    pub ways: Vec<Vec<Voxel>>,
+    /// Every decision, in order.
+    pub records: Vec<Record>,
+    /// Voxels in the order in which they were seen, each with the step and with whether
+    /// it is occupied.
+    pub found: Vec<(u32, Voxel, bool)>,
+    /// Occupied voxels that can be seen from any place that can be reached: all that
+    /// there is to see.
+    pub visible: u32,
+    /// Those that somebody had seen after each number of steps, from 0.
+    pub seen: Vec<u32>,
+    /// Whether every robot had stopped.
+    pub all_stopped: bool,
+    /// Why each robot had stopped at the end, if it had.
+    pub stops: Vec<Option<Stop<Voxel>>>,
+    /// Flights into or beside something, or longer than a voxel.
+    pub violations: u32,
+}
+
+impl VoxelTrace {
+    /// Steps until `share` of all that there is to see had been seen.
+    pub fn ticks_to(&self, share: f64) -> Option<u32> {
+        let wanted = (share * f64::from(self.visible)).ceil() as u32;
+        let tick = self.seen.iter().position(|&seen| seen >= wanted);
+        tick.map(|tick| tick as u32)
+    }
+
+    /// Whether everything that can be seen was seen, without a violation.
+    pub fn complete(&self) -> bool {
+        let all = Some(&self.visible).filter(|&&all| all > 0);
+        all.is_some() && self.seen.last() == all && self.violations == 0
+    }
+
+    /// What had been seen after `tick` steps as an octree, free voxels included.
+    pub fn octree(&self, tick: u32) -> OcTree {
+        let mut tree = OcTree::new(1.0);
+        let known = self.found.iter().take_while(|found| found.0 <= tick);
+        for (_, voxel, occupied) in known {
+            tree.insert([voxel.x, voxel.y, voxel.z].map(i32::from), *occupied);
+        }
+        tree
+    }
+
+    /// What had been seen after `tick` steps, with the ways flown.
+    pub fn oblique_view(&self, tick: u32) -> image::RgbImage {
+        let known = self.found.iter().take_while(|found| found.0 <= tick);
+        let blocks = known.filter(|found| found.2).map(|(_, voxel, _)| Block {
+            cell: voxel.cell(),
+            bottom: f32::from(voxel.z),
+            top: f32::from(voxel.z) + 1.0,
+        });
+        let point = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
+        let ways: Vec<Vec<Point>> = self
+            .ways
+            .iter()
+            .map(|way| way.iter().take(tick as usize + 1).map(point).collect())
+            .collect();
+        let highest = f32::from(self.scene.levels());
+        oblique(self.scene.extent(), highest, blocks.collect(), &ways)
+    }
+}

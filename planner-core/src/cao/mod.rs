@@ -6,8 +6,10 @@
 //! dual form: for `N` rows Φ the matrix K = ΦΦᵀ + λI is `N`×`N` instead of 20×20,
 //! and ϑ = Φᵀ K⁻¹ y is the same minimiser at a quarter of the work.
 
+mod history;
 mod polynomial;
 
+pub(crate) use history::History;
 pub use polynomial::{Degree, TERMS};
 
 use nalgebra::{SMatrix, SVector};

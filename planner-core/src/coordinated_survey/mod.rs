@@ -6,7 +6,7 @@
 //! it closes a *pocket*, a hole in known surface, as soon as it is the nearest to it;
 //! and its local model is fitted not only to the past but to probes of the map ahead.
 //! Every decision looks at a bounded neighbourhood, the tile counts, and at most
-//! [`MAX_PEERS`](crate::survey::MAX_PEERS) robots.
+//! [`MAX_PEERS`](crate::radio::MAX_PEERS) robots.
 //!
 //! # Why it ends
 //! Pockets, swaths and frontiers are heuristics, and what others say of themselves bends
@@ -21,8 +21,8 @@ mod pocket;
 mod swath;
 mod vicinity;
 
+use crate::cao::History;
 use crate::cell::{Cell, Extent};
-use crate::fcao::History;
 use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;

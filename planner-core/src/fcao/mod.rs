@@ -8,11 +8,7 @@
 //! ends, whatever refuses a flight, whatever no look shows and whatever others say, is
 //! proved in `survey/rescue.rs`.
 
-mod history;
-
-pub(crate) use history::History;
-
-use crate::cao::{Degree, Frame, Model};
+use crate::cao::{Degree, Frame, History, Model};
 use crate::cell::Extent;
 use crate::point::Point;
 use crate::radio::LinkConfig;

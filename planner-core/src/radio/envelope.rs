@@ -1,15 +1,15 @@
 //! What frames of all kinds begin and end with, and how cells are written.
 
-use crc::{CRC_16_IBM_SDLC, Crc, Table};
-
-use super::frame::{Field, FrameError, MAX_LEN};
-use super::link::{GridId, Key};
+use super::check::{CHECK, GridId};
+use super::error::{Field, FrameError, VERSION};
+use super::key::Key;
 use crate::cell::{Cell, Extent};
 use crate::robot::RobotId;
 use crate::tile::{MOST_TILES, TILE};
 
-/// The format that this code writes, and the only one that it reads.
-pub(super) const VERSION: u8 = 1;
+/// The longest frame in bytes: what the Crazyflie's peer-to-peer radio carries
+/// safely, less two.
+pub const MAX_LEN: usize = 55;
 
 /// Bytes of the header: version, kind, grid, sender, sequence.
 pub(super) const HEADER: usize = 7;
@@ -17,9 +17,6 @@ pub(super) const HEADER: usize = 7;
 pub(super) const CRC: usize = 2;
 /// Bytes of the keyed tag, which takes the place of the CRC.
 pub(super) const TAG: usize = 4;
-
-/// With a table of 512 bytes: every frame in earshot is checked, byte by byte.
-pub(super) static CHECK: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_SDLC);
 
 /// What is behind version and kind in the header.
 pub(super) struct Header {
@@ -31,8 +28,7 @@ pub(super) struct Header {
 /// A frame whose header and check bytes have not been looked at.
 pub(super) struct Sealed<'a> {
     header: &'a [u8; HEADER],
-    /// Between header and check bytes.
-    pub(super) payload: &'a [u8],
+    payload: &'a [u8],
     body: &'a [u8],
     check: &'a [u8],
     key: Option<&'a Key>,
@@ -54,6 +50,21 @@ impl<'a> Sealed<'a> {
             check,
             key,
         })
+    }
+
+    /// What is between header and check bytes: the status, of a fixed length, and at most
+    /// `room` bytes of records.
+    ///
+    /// # Errors
+    /// It is shorter or longer.
+    pub(super) fn payload<const STATUS: usize>(
+        &self,
+        room: usize,
+    ) -> Result<(&'a [u8; STATUS], &'a [u8]), FrameError> {
+        self.payload
+            .split_first_chunk()
+            .filter(|(_, records)| records.len() <= room)
+            .ok_or(FrameError::Length(self.body.len() + self.check.len()))
     }
 
     /// The header of an intact frame of this kind about `grid`.

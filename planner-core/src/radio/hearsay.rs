@@ -1,6 +1,7 @@
 //! What a robot has from others, and what speaks against them.
 
-use super::{FrameError, TileRecord};
+use super::cells::TileRecord;
+use super::error::FrameError;
 use crate::map::Map;
 use crate::robot::RobotId;
 use crate::sight::Sighting;

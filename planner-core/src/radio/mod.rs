@@ -5,22 +5,33 @@
 //! repetition of the same frames gives the same map; what it says of the sender is
 //! a hint with a sequence number. `docs/wire-format.md` has the byte tables.
 
+mod cells;
+mod check;
 mod envelope;
-mod frame;
+mod error;
 mod hearsay;
+mod heights;
+mod key;
 mod link;
 mod outbox;
-mod sent;
-mod surface_frame;
-mod voxel_frame;
+mod roster;
+mod sender;
+mod voxels;
 
-pub use frame::{Field, Frame, FrameError, MAX_LEN, MAX_TILES, TileRecord};
+pub use cells::{Frame, MAX_TILES, TileRecord};
+pub use check::GridId;
+pub use envelope::MAX_LEN;
+pub use error::{Field, FrameError};
 pub use hearsay::Hearsay;
-pub use link::{GridId, Heard, Key, Link, LinkConfig};
-pub(crate) use sent::Sent;
-pub use surface_frame::{HeightRecord, SurfaceFrame};
-pub(crate) use voxel_frame::MAX_PATCHES;
-pub use voxel_frame::VoxelFrame;
+pub use heights::{HeightRecord, SurfaceFrame};
+pub use key::Key;
+pub use link::{Heard, Link};
+pub(crate) use roster::Roster;
+pub use roster::{MAX_PEERS, PEER_MEMORY, Peer};
+pub use sender::LinkConfig;
+pub(crate) use sender::Sender;
+pub(crate) use voxels::MAX_PATCHES;
+pub use voxels::VoxelFrame;
 
 #[cfg(test)]
 mod tests;

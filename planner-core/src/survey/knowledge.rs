@@ -5,10 +5,9 @@ use core::fmt;
 use super::Limits;
 use super::link::Link;
 use super::news::{MAX_RANGE, News, REPEATS};
-use super::peers::{Peer, Peers};
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::point::Point;
-use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN};
+use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN, Peer, Roster};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::surface::{Column, Height, Patch, Surface, distance_to_tile};
 use crate::tile::{TileIndex, bits};
@@ -67,7 +66,7 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     pub(super) surface: Surface<TW, TH>,
     pub(super) position: Point,
     news: News,
-    pub(super) peers: Peers<Status<Point, Cell>>,
+    pub(super) peers: Roster<Point, Cell>,
     /// The tile of the own map that is told next.
     turn: TileIndex,
     gain: f32,
@@ -102,7 +101,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             surface: Surface::vacant(),
             position: Point::new(0.0, 0.0, 0.0),
             news: News::new(),
-            peers: Peers::new(),
+            peers: Roster::new(),
             turn: TileIndex { x: 0, y: 0 },
             gain: 0.0,
             reward: 0.0,
@@ -159,7 +158,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.limits = limits;
         self.position = Point::new(0.0, 0.0, 0.0);
         self.news = News::new();
-        self.peers = Peers::new();
+        self.peers = Roster::new();
         self.turn = TileIndex { x: 0, y: 0 };
         self.gain = 0.0;
         self.reward = 0.0;
@@ -243,13 +242,13 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// The other robots as last heard.
-    pub fn peers(&self) -> impl Iterator<Item = &Peer<Status<Point, Cell>>> {
+    pub fn peers(&self) -> impl Iterator<Item = &Peer<Point, Cell>> {
         self.peers.iter()
     }
 
     /// The heard robots that still explore.
-    pub(crate) fn rivals(&self) -> impl Iterator<Item = &Peer<Status<Point, Cell>>> {
-        self.peers().filter(|peer| !peer.status.has_stopped())
+    pub(crate) fn rivals(&self) -> impl Iterator<Item = &Peer<Point, Cell>> {
+        self.peers.rivals()
     }
 
     /// What the robot tells the others of its map in this step: the columns that it

@@ -2,18 +2,19 @@
 
 use crate::cell::{Cell, Extent};
 use crate::point::Point;
-use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, SurfaceFrame};
+use crate::radio::{FrameError, GridId, Hearsay, Key, LinkConfig, MAX_LEN, Sender, SurfaceFrame};
 use crate::robot::{RobotId, Status};
 use crate::tile::TileIndex;
-
-use super::sender::Sender;
 
 /// Every so many frames one begins with the turn, whatever else waits.
 const TURN: u8 = 4;
 
+/// Own frames that are remembered, to know their echo: those of three steps.
+const ECHOES: usize = 32;
+
 #[derive(Clone, Debug)]
 pub(super) struct Link {
-    sender: Sender,
+    sender: Sender<ECHOES>,
     /// The tile of the own map that is sent in turn, and the columns of it that were
     /// not sent yet.
     turn: TileIndex,
@@ -85,9 +86,9 @@ impl Link {
 
     /// Writes `frame`, and counts it.
     pub(super) fn send(&mut self, frame: &SurfaceFrame, buffer: &mut [u8; MAX_LEN]) -> usize {
-        let length = frame.encode(self.sender.key(), buffer);
-        self.sender.sent(buffer.get(..length).unwrap_or(&[]));
-        length
+        self.sender.send(buffer, |key: Option<&Key>, buffer| {
+            frame.encode(key, buffer)
+        })
     }
 
     /// Reads another robot's frame.

@@ -13,18 +13,13 @@ mod flight;
 mod knowledge;
 mod link;
 mod news;
-mod peers;
 mod rescue;
-mod sender;
 
 pub use knowledge::{Knowledge, SetupError};
 pub use news::MAX_RANGE;
-pub use peers::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use rescue::PATIENCE;
 
-pub(crate) use peers::Peers;
 pub(crate) use rescue::Rescue;
-pub(crate) use sender::Sender;
 
 use crate::cell::Cell;
 use crate::point::Point;

@@ -1,9 +1,9 @@
 //! The columns that a robot saw first in its last few steps, and how many robots
 //! saw them first together with it.
 
-use super::MAX_PEERS;
 use crate::cell::Cell;
 use crate::point::Point;
+use crate::radio::MAX_PEERS;
 use crate::tile::{TILE, TileIndex, bits};
 
 /// Tiles along one side of the window around a robot.

@@ -65,9 +65,10 @@ mod news;
 use heapless::Vec;
 
 use crate::cell::{Extent, ExtentError};
-use crate::radio::{FrameError, GridId, Hearsay, LinkConfig, MAX_LEN, VoxelFrame};
+use crate::radio::{
+    FrameError, GridId, Hearsay, Key, LinkConfig, MAX_LEN, Roster, Sender, VoxelFrame,
+};
 use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
-use crate::survey::{Peer, Peers, Sender};
 use crate::tile::{TileIndex, every_tile};
 use crate::volume::{Content, Layer, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
@@ -91,6 +92,9 @@ const ROUNDS: u8 = 3;
 
 /// Steps of rest before the first of these; each time twice as many.
 const REST: u8 = 8;
+
+/// Own frames that are remembered, to know their echo: those of three steps.
+const ECHOES: usize = 32;
 
 /// Largest sensor range in voxels.
 pub const MAX_RANGE: u8 = 12;
@@ -117,8 +121,8 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     way: Vec<Voxel, WAY>,
     goal: Voxel,
     far: Far<TW, TH, L>,
-    peers: Peers<Status<Voxel>>,
-    sender: Sender,
+    peers: Roster<Voxel>,
+    sender: Sender<ECHOES>,
     news: News<TW, TH, L>,
     /// Where the look at all poses in turn stands, and those of its word that were
     /// looked at.
@@ -165,7 +169,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             way: Vec::new(),
             goal: Voxel::new(0, 0, 0),
             far: Far::vacant(),
-            peers: Peers::new(),
+            peers: Roster::new(),
             sender: Sender::vacant(),
             news: News::new(),
             turn: (TileIndex { x: 0, y: 0 }, 0),
@@ -226,7 +230,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.range = config.range.clamp(2, MAX_RANGE);
         self.position = Voxel::new(0, 0, 0);
         self.goal = Voxel::new(0, 0, 0);
-        self.peers = Peers::new();
+        self.peers = Roster::new();
         self.sender = Sender::new(config.link, grid, id);
         self.news.reset();
         self.turn = (TileIndex { x: 0, y: 0 }, 0);
@@ -356,15 +360,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.peers.hear(id, status);
     }
 
-    /// The heard robots that still explore.
-    fn rivals(&self) -> impl Iterator<Item = &Status<Voxel>> {
-        let statuses = self
-            .peers
-            .iter()
-            .map(|peer: &Peer<Status<Voxel>>| &peer.status);
-        statuses.filter(|status| !status.has_stopped())
-    }
-
     /// Whether a rival, or where it goes, is nearer to `pose`, and that counts.
     fn is_a_rivals(&self, pose: Voxel) -> bool {
         if self.fruitless > PATIENCE {
@@ -372,8 +367,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         let own = pose.distance_squared(self.position);
         let is_nearer = |voxel: Voxel| pose.distance_squared(voxel) < own;
-        self.rivals()
-            .any(|rival| is_nearer(rival.position) || rival.goal.is_some_and(is_nearer))
+        self.peers.rivals().any(|rival| {
+            is_nearer(rival.status.position) || rival.status.goal.is_some_and(is_nearer)
+        })
     }
 
     /// Writes the next frame for the radio and returns its length, or `None` while the
@@ -395,9 +391,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             patches: Vec::new(),
         };
         self.news.tell(&self.volume, &mut frame);
-        let length = frame.encode(self.sender.key(), buffer);
-        self.sender.sent(buffer.get(..length).unwrap_or(&[]));
-        Some(length)
+        let write = |key: Option<&Key>, buffer: &mut _| frame.encode(key, buffer);
+        Some(self.sender.send(buffer, write))
     }
 
     /// Takes in another robot's frame; gives the number of voxels that it brought.

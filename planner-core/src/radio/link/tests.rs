@@ -89,12 +89,15 @@ fn an_error_changes_nothing() {
     for (mut receiver, error) in [
         (sender.clone(), FrameError::Own),
         (link(1, LinkConfig::new()), FrameError::SameId(RobotId(1))),
-        (link(2, elsewhere), FrameError::OtherGrid(sender.grid)),
+        (
+            link(2, elsewhere),
+            FrameError::OtherGrid(sender.sender.grid),
+        ),
     ] {
         let (mut before, mut heard_by) = (receiver.clone(), map());
         assert_eq!(receiver.receive(&frame, &mut heard_by), Err(error));
         // But for the counters.
-        before.hearsay = receiver.hearsay;
+        before.sender.hearsay = receiver.sender.hearsay;
         assert_eq!(receiver, before);
         assert!(heard_by == map());
     }
@@ -138,7 +141,7 @@ fn a_number_far_ahead_is_no_news_and_silences_nobody() {
     assert!(is_news(&mut receiver, &mut sender));
     for ahead in [100, 1000, 30_000, 40_000] {
         let mut forger = link(1, LinkConfig::new());
-        forger.sequence = sender.sequence.wrapping_add(ahead);
+        forger.sender.sequence = sender.sender.sequence.wrapping_add(ahead);
         assert!(!is_news(&mut receiver, &mut forger), "{ahead}");
         assert!(is_news(&mut receiver, &mut sender), "{ahead}");
     }
@@ -240,7 +243,7 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
 #[test]
 fn sequence_numbers_wrap_around() {
     let (mut sender, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
-    sender.sequence = u16::MAX - 1;
+    sender.sender.sequence = u16::MAX - 1;
     let mut heard_by = map();
     let frames: std::vec::Vec<_> = (0..4).map(|_| next_frame(&mut sender, &map())).collect();
     for frame in &frames {
@@ -256,7 +259,7 @@ fn sequence_numbers_wrap_around() {
 #[test]
 fn a_sender_that_starts_anew_is_believed_after_a_silence_of_its_old_numbers() {
     let (mut old, mut receiver) = (link(1, LinkConfig::new()), link(2, LinkConfig::new()));
-    old.sequence = 1000;
+    old.sender.sequence = 1000;
     receiver
         .receive(&next_frame(&mut old, &map()), &mut map())
         .unwrap();

@@ -2,9 +2,10 @@
 
 use heapless::Vec;
 
-use super::envelope::{HEADER, Header, Sealed, TAG, Writer, optional_cell, packed};
-use super::frame::{Field, FrameError, MAX_LEN};
-use super::link::{GridId, Key};
+use super::check::GridId;
+use super::envelope::{HEADER, Header, MAX_LEN, Sealed, TAG, Writer, optional_cell, packed};
+use super::error::{Field, FrameError};
+use super::key::Key;
 use crate::cell::{Cell, Extent};
 use crate::list;
 use crate::point::Point;
@@ -170,15 +171,8 @@ impl SurfaceFrame {
         grid: GridId,
         extent: Extent,
     ) -> Result<Self, FrameError> {
-        let wrong_length = FrameError::Length(bytes.len());
         let sealed = Sealed::new(bytes, key)?;
-        let (status, mut rest) = sealed
-            .payload
-            .split_first_chunk::<STATUS>()
-            .ok_or(wrong_length)?;
-        if rest.len() > ROOM {
-            return Err(wrong_length);
-        }
+        let (status, mut rest) = sealed.payload::<STATUS>(ROOM)?;
         let &[state, x0, x1, y0, y1, z0, z1, t0, t1, t2] = status;
         let header = sealed.open(HEIGHTS, grid)?;
         if state & !3 != 0 {

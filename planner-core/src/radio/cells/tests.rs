@@ -4,7 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::cell::Cell;
-use crate::radio::envelope::{CHECK, CRC};
+use crate::radio::check::CHECK;
+use crate::radio::envelope::CRC;
 
 const GRID: GridId = GridId(0xcafe);
 const EXTENT: Extent = Extent::new(512, 511);

@@ -2,11 +2,12 @@
 
 use heapless::Vec;
 
+use super::check::GridId;
 use super::envelope::{
-    CHECK, HEADER, Header, Sealed, TAG, Writer, optional_cell, packed, unpacked,
+    HEADER, Header, MAX_LEN, Sealed, TAG, Writer, optional_cell, packed, unpacked,
 };
-use super::frame::{Field, FrameError, MAX_LEN};
-use super::link::{GridId, Key};
+use super::error::{Field, FrameError};
+use super::key::Key;
 use crate::cell::Extent;
 use crate::robot::{Activity, RobotId, Status};
 use crate::tile::MOST_TILES;
@@ -45,14 +46,6 @@ pub struct VoxelFrame {
     pub status: Status<Voxel>,
     /// Pieces of its map, each with a known voxel at least; together at most 35 bytes.
     pub patches: Vec<VoxelPatch, MAX_PATCHES>,
-}
-
-impl GridId {
-    /// The same of a box with `levels` levels over the grid.
-    pub fn of_box(extent: Extent, levels: u8, origin_mm: (i32, i32), cell_mm: u16) -> Self {
-        let [a, b] = Self::of(extent, origin_mm, cell_mm).0.to_le_bytes();
-        Self(CHECK.checksum(&[a, b, levels]))
-    }
 }
 
 /// The length of `patch` on the wire in bytes, 3 to 19.
@@ -130,15 +123,8 @@ impl VoxelFrame {
         extent: Extent,
         levels: u8,
     ) -> Result<Self, FrameError> {
-        let wrong_length = FrameError::Length(bytes.len());
         let sealed = Sealed::new(bytes, key)?;
-        let (status, mut rest) = sealed
-            .payload
-            .split_first_chunk::<STATUS>()
-            .ok_or(wrong_length)?;
-        if rest.len() > ROOM {
-            return Err(wrong_length);
-        }
+        let (status, mut rest) = sealed.payload::<STATUS>(ROOM)?;
         let &[state, p0, p1, p2, height, g0, g1, g2, goal_height] = status;
         let header = sealed.open(VOXELS, grid)?;
         if state & !3 != 0 {

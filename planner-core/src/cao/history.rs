@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::cao::Sample;
+use super::Sample;
 use crate::list;
 use crate::point::Point;
 

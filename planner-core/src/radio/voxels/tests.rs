@@ -3,6 +3,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::radio::check::CHECK;
 use crate::radio::envelope::CRC;
 
 const GRID: GridId = GridId(0xcafe);

@@ -1,6 +1,6 @@
 //! What was last heard of the other robots.
 
-use crate::robot::RobotId;
+use crate::robot::{RobotId, Status};
 use crate::zeroed::Maybe;
 
 /// Number of other robots that are remembered; of more, the latest heard.
@@ -11,11 +11,11 @@ pub const PEER_MEMORY: u8 = 15;
 
 /// Another robot as last heard.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peer<S> {
+pub struct Peer<P, G = P> {
     /// Its name.
     pub id: RobotId,
     /// What it said.
-    pub status: S,
+    pub status: Status<P, G>,
     /// Steps since.
     pub age: u8,
     /// Number of the frame that it said it in; 0 where there are no frames.
@@ -24,36 +24,41 @@ pub struct Peer<S> {
 
 /// At most [`MAX_PEERS`] robots, each once.
 #[derive(Clone, Debug)]
-pub(crate) struct Peers<S>([Maybe<Peer<S>>; MAX_PEERS]);
+pub(crate) struct Roster<P, G = P>([Maybe<Peer<P, G>>; MAX_PEERS]);
 
-impl<S: Copy> Peers<S> {
+impl<P: Copy, G: Copy> Roster<P, G> {
     pub(crate) const fn new() -> Self {
         Self([Maybe::Nothing; MAX_PEERS])
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &Peer<S>> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = &Peer<P, G>> {
         self.0.iter().filter_map(|place| match place {
             Maybe::Nothing => None,
             Maybe::Just(peer) => Some(peer),
         })
     }
 
-    /// The same by frame number `sequence`; older frames than the last are ignored.
-    pub(crate) fn hear_frame(&mut self, id: RobotId, status: S, sequence: u16) {
+    /// Those that still explore.
+    pub(crate) fn rivals(&self) -> impl Iterator<Item = &Peer<P, G>> {
+        self.iter().filter(|peer| !peer.status.has_stopped())
+    }
+
+    /// Takes in what a robot said, by frame number `sequence`; older frames than its last are ignored.
+    pub(crate) fn hear_frame(&mut self, id: RobotId, status: Status<P, G>, sequence: u16) {
         let heard = self.iter().find(|peer| peer.id == id);
-        let is_news = |peer: &Peer<S>| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
+        let is_news = |peer: &Peer<P, G>| (sequence.wrapping_sub(peer.sequence) as i16) > 0;
         if heard.is_none_or(is_news) {
             self.put(id, status, sequence);
         }
     }
 
     /// Replaces what `id` said before, or else takes an empty or the oldest place.
-    pub(crate) fn hear(&mut self, id: RobotId, status: S) {
+    pub(crate) fn hear(&mut self, id: RobotId, status: Status<P, G>) {
         self.put(id, status, 0);
     }
 
-    fn put(&mut self, id: RobotId, status: S, sequence: u16) {
-        let staleness = |place: &Maybe<Peer<S>>| match place {
+    fn put(&mut self, id: RobotId, status: Status<P, G>, sequence: u16) {
+        let staleness = |place: &Maybe<Peer<P, G>>| match place {
             Maybe::Just(peer) if peer.id == id => u16::MAX,
             Maybe::Just(peer) => u16::from(peer.age),
             Maybe::Nothing => u16::MAX - 1,
@@ -85,7 +90,7 @@ impl<S: Copy> Peers<S> {
 mod tests {
     use super::*;
     use crate::point::Point;
-    use crate::robot::{Activity, Status};
+    use crate::robot::Activity;
 
     fn at(x: f32) -> Status<Point> {
         Status {
@@ -97,7 +102,7 @@ mod tests {
 
     #[test]
     fn remembers_each_robot_once_and_the_latest_of_many() {
-        let mut peers = Peers::new();
+        let mut peers = Roster::new();
         for id in 0..20 {
             peers.hear(RobotId(id), at(0.0));
             peers.hear(RobotId(id), at(1.0));

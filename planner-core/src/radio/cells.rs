@@ -1,21 +1,17 @@
 //! The frame as bytes and as a value that can only be valid.
 
-use core::fmt;
-
 use heapless::Vec;
 
+use super::check::GridId;
 use super::envelope::{
-    CRC, HEADER, Header, Sealed, TAG, VERSION, Writer, optional_cell, packed, unpacked,
+    CRC, HEADER, Header, MAX_LEN, Sealed, TAG, Writer, optional_cell, packed, unpacked,
 };
-use super::link::{GridId, Key};
+use super::error::{Field, FrameError};
+use super::key::Key;
 use crate::cell::Extent;
 use crate::map::Tile;
 use crate::robot::{Activity, RobotId, Status};
 use crate::tile::{TILE, TileIndex};
-
-/// The longest frame in bytes: what the Crazyflie's peer-to-peer radio carries
-/// safely, less two.
-pub const MAX_LEN: usize = 55;
 
 /// Tiles in a frame at most.
 pub const MAX_TILES: usize = 2;
@@ -57,71 +53,6 @@ pub struct Frame {
     pub tiles: Vec<TileRecord, MAX_TILES>,
 }
 
-/// A field of a frame that holds what it cannot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum Field {
-    /// The state byte.
-    State,
-    /// The position lies outside of the grid.
-    Position,
-    /// The goal lies outside of the grid, or is there and should not be.
-    Goal,
-    /// A tile lies outside of the grid, or knows of cells that do.
-    Tile,
-}
-
-/// Why a frame was not taken. Nothing has changed then.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub enum FrameError {
-    /// No frame has this length: cut short, or followed by something else.
-    Length(usize),
-    /// Written in another version of the format.
-    Version(u8),
-    /// A kind of frame that this planner does not read.
-    Kind(u8),
-    /// The check bytes do not match: corrupted, or not signed with the key.
-    Check,
-    /// The sender's map is of another place, resolution or size.
-    OtherGrid(GridId),
-    /// The robot's own frame, one of its last: an echo.
-    Own,
-    /// Another robot's frame under this robot's own id: each must have its own.
-    SameId(RobotId),
-    /// A field holds what it cannot.
-    Field(Field),
-}
-
-impl fmt::Display for FrameError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Length(bytes) => write!(f, "no frame is {bytes} bytes long"),
-            Self::Version(version) => write!(
-                f,
-                "the frame is of version {version}, this planner reads version {VERSION}"
-            ),
-            Self::Kind(kind) => write!(f, "this planner does not read frames of kind {kind}"),
-            Self::Check => write!(f, "the frame's check bytes do not match"),
-            Self::OtherGrid(grid) => write!(
-                f,
-                "the frame is about grid {:04x}: check origin, resolution and size on both robots",
-                grid.0
-            ),
-            Self::Own => write!(f, "the frame is the robot's own"),
-            Self::SameId(RobotId(id)) => write!(
-                f,
-                "another robot has the id {id} too: give each robot of the fleet its own id"
-            ),
-            Self::Field(field) => write!(f, "the frame's {field:?} field is out of range"),
-        }
-    }
-}
-
-impl core::error::Error for FrameError {}
-
 impl Frame {
     /// Writes the frame and returns its length: 16 bytes, 18 more a tile, and 2
     /// more with a key. Bytes behind are not touched.
@@ -161,15 +92,11 @@ impl Frame {
         grid: GridId,
         extent: Extent,
     ) -> Result<Self, FrameError> {
-        let wrong_length = FrameError::Length(bytes.len());
         let sealed = Sealed::new(bytes, key)?;
-        let (status, records) = sealed
-            .payload
-            .split_first_chunk::<STATUS>()
-            .ok_or(wrong_length)?;
+        let (status, records) = sealed.payload::<STATUS>(MAX_TILES * RECORD)?;
         let (records, rest) = records.as_chunks::<RECORD>();
-        if !rest.is_empty() || records.len() > MAX_TILES {
-            return Err(wrong_length);
+        if !rest.is_empty() {
+            return Err(FrameError::Length(bytes.len()));
         }
         let &[state, p0, p1, p2, q0, q1, q2] = status;
         let header = sealed.open(OCCUPANCY, grid)?;

@@ -3,7 +3,8 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::radio::envelope::{CHECK, CRC};
+use crate::radio::check::CHECK;
+use crate::radio::envelope::CRC;
 
 const GRID: GridId = GridId(0xcafe);
 const EXTENT: Extent = Extent::new(100, 61);

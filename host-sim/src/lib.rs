@@ -10,6 +10,7 @@
 //! Compiled for the browser (`wasm32`), the library lacks `chip`, `experiments`,
 //! `files` and `live`, which need processes, threads, sockets or a file system.
 
+pub mod baselines;
 #[cfg(unix)]
 pub mod chip;
 mod coverage;
@@ -25,7 +26,6 @@ pub mod fleet;
 pub mod live;
 pub mod measured;
 pub mod medium;
-pub mod peers;
 pub mod planners;
 pub mod record;
 pub mod run;

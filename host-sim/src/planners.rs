@@ -11,7 +11,7 @@ use planner_core::radio::LinkConfig;
 use planner_core::{Cell, Extent, Planner, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::peers::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
+use crate::baselines::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]

@@ -134,18 +134,15 @@ impl Compare {
         let comparisons = compare(&rows, self.reference, self.metric);
         let table = markdown(&comparisons, self.reference, self.metric);
         let mut folder = Folder::open(self.out.clone())?;
-        folder.write("runs.csv", |file| Ok(file.write_all(&to_csv(&rows, true))?))?;
+        folder.put("runs.csv", &to_csv(&rows, true))?;
         #[cfg(feature = "parquet")]
         if self.parquet {
             let mut bytes = Vec::new();
             host_sim::experiments::write_parquet(&rows, &mut bytes)?;
             folder.write("runs.parquet", |file| Ok(file.write_all(&bytes)?))?;
         }
-        folder.write("table.md", |file| Ok(file.write_all(table.as_bytes())?))?;
-        folder.write("table.csv", |file| {
-            let csv = comparisons_csv(&comparisons, self.metric);
-            Ok(file.write_all(csv.as_bytes())?)
-        })?;
+        folder.put("table.md", &table)?;
+        folder.put("table.csv", &comparisons_csv(&comparisons, self.metric))?;
         folder.close()?;
 
         print!("{table}");

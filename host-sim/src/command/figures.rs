@@ -6,13 +6,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
-use host_sim::experiments::figures::{Effort, Figure, figures, measure, page};
-use host_sim::experiments::to_csv;
-use host_sim::survey::figures as survey;
+use host_sim::experiments::figures::{
+    Drawn, Effort, Figure, SURVEYS, figures, measure, page, survey,
+};
 use host_sim::world::{ReadOptions, Scale, World, WorldError};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::folder::Folder;
+use super::folder::{Folder, FolderError};
 use super::{Done, tell_notes};
 
 #[derive(Args)]
@@ -44,43 +44,23 @@ impl Figures {
         let runs: usize = figures.iter().map(|figure| figure.plan.runs()).sum();
         let bar = self.progress_bar(runs);
         let mut folder = Folder::open(self.out.clone())?;
-        let mut measured = Vec::new();
+        let mut explorations = Vec::new();
         for figure in figures {
-            let id = figure.id;
-            bar.set_message(id);
-            let done = measure(figure, &|| bar.inc(1))?;
-            let chart = done.chart();
-            let svg = chart.svg()?;
-            folder.write(format!("{id}.svg"), |file| {
-                Ok(file.write_all(svg.as_bytes())?)
-            })?;
-            folder.write(format!("{id}.png"), |file| chart.write_png(file))?;
-            folder.write(format!("{id}.csv"), |file| {
-                Ok(file.write_all(&to_csv(&done.rows, true))?)
-            })?;
-            measured.push(done);
+            bar.set_message(figure.id);
+            let drawn = Drawn::from(&measure(figure, &|| bar.inc(1))?);
+            write(&mut folder, &drawn)?;
+            explorations.push(drawn);
         }
         let mut surveys = Vec::new();
-        for id in survey::FIGURES {
-            if !self.is_wanted(id) {
-                continue;
-            }
+        for id in SURVEYS.into_iter().filter(|id| self.is_wanted(id)) {
             bar.set_message(id);
             let terrains = if self.quick { 3 } else { 100 };
-            if let Some(figure) = survey::figure(id, terrains)? {
-                let svg = figure.chart.svg()?;
-                folder.write(format!("{id}.svg"), |file| {
-                    Ok(file.write_all(svg.as_bytes())?)
-                })?;
-                folder.write(format!("{id}.png"), |file| figure.chart.write_png(file))?;
-                folder.write(format!("{id}.csv"), |file| {
-                    Ok(file.write_all(figure.csv.as_bytes())?)
-                })?;
-                surveys.push(figure);
+            if let Some(drawn) = survey(id, terrains)? {
+                write(&mut folder, &drawn)?;
+                surveys.push(drawn);
             }
         }
-        let page = page(&measured, &surveys);
-        folder.write("index.html", |file| Ok(file.write_all(page.as_bytes())?))?;
+        folder.put("index.html", &page(&explorations, &surveys))?;
         folder.close()?;
         bar.finish_and_clear();
         println!("{}: {runs} runs", self.out.join("index.html").display());
@@ -104,11 +84,10 @@ impl Figures {
         });
         let mut figures = figures(effort, hospital.transpose()?);
         if let Some(unknown) = self.only.iter().find(|id| {
-            figures.iter().all(|figure| figure.id != **id)
-                && !survey::FIGURES.contains(&id.as_str())
+            figures.iter().all(|figure| figure.id != **id) && !SURVEYS.contains(&id.as_str())
         }) {
             let ids = figures.iter().map(|figure| figure.id);
-            let ids: Vec<_> = ids.chain(survey::FIGURES).collect();
+            let ids: Vec<_> = ids.chain(SURVEYS).collect();
             return Err(
                 format!("--only: no figure {unknown}; there are {}", ids.join(", ")).into(),
             );
@@ -129,4 +108,13 @@ impl Figures {
         ProgressBar::new(runs as u64)
             .with_style(ProgressStyle::with_template(style).expect("the template is well-formed"))
     }
+}
+
+/// The files of a figure.
+fn write(folder: &mut Folder, Drawn { id, chart, csv, .. }: &Drawn) -> Result<(), FolderError> {
+    folder.write(format!("{id}.svg"), |file| {
+        Ok(file.write_all(chart.svg()?.as_bytes())?)
+    })?;
+    folder.write(format!("{id}.png"), |file| chart.write_png(file))?;
+    folder.put(format!("{id}.csv"), csv)
 }

@@ -59,6 +59,11 @@ impl Folder {
         Ok(())
     }
 
+    /// Prepares a file that holds `text`.
+    pub(super) fn put(&mut self, name: impl AsRef<Path>, text: &str) -> Result<(), FolderError> {
+        self.write(name, |file| Ok(file.write_all(text.as_bytes())?))
+    }
+
     /// Prepares what had been seen over time, as a table and as a curve.
     pub(super) fn write_coverage(&mut self, coverage: &Coverage) -> Result<(), FolderError> {
         self.write("coverage.csv", |file| Ok(coverage.write_csv(file)?))?;

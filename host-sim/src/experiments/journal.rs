@@ -82,7 +82,7 @@ impl Journal {
         let mut file = self.file.lock().expect("nobody panics while writing");
         let mut add = || {
             let is_empty = file.metadata()?.len() == 0;
-            file.write_all(&to_csv([row], is_empty))
+            file.write_all(to_csv([row], is_empty).as_bytes())
         };
         add().map_err(|problem| JournalError::Io {
             path: self.path.clone(),
@@ -129,11 +129,12 @@ fn whole_lines(text: &str) -> &str {
 }
 
 /// Rows as CSV, with or without the line of column names.
-pub fn to_csv<'a>(rows: impl IntoIterator<Item = &'a Row>, headers: bool) -> Vec<u8> {
+pub fn to_csv<'a>(rows: impl IntoIterator<Item = &'a Row>, headers: bool) -> String {
     let mut builder = csv::WriterBuilder::new();
     let mut writer = builder.has_headers(headers).from_writer(Vec::new());
     for row in rows {
         writer.serialize(row).expect("a row has plain fields only");
     }
-    writer.into_inner().expect("a Vec takes everything")
+    let csv = writer.into_inner().expect("a Vec takes everything");
+    String::from_utf8(csv).expect("fields are text")
 }

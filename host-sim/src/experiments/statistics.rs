@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use distrs::StudentsT;
 
 use super::row::{Key, Metric, Row};
+use crate::draw::chart::Point;
 use crate::planners::PlannerKind;
 
 /// A mean and its 95 % confidence interval.
@@ -18,14 +19,27 @@ pub struct Interval {
     pub high: f64,
 }
 
+impl Interval {
+    /// The interval in a chart, above `x`.
+    pub fn at(self, x: f64) -> Point {
+        let Self { mean, low, high } = self;
+        Point {
+            x,
+            y: mean,
+            low,
+            high,
+        }
+    }
+}
+
 /// The mean of samples, each with what it stems from; `None` of none.
 ///
 /// Samples of one origin (runs in one world) resemble each other: the interval
 /// takes origins, not samples, for independent, unless all are of one origin.
 /// It is that of Student's t, with the variance of a mean over clusters
 /// [Cochran1977 §9A].
-pub fn mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Interval> {
-    let samples: Vec<(&str, f64)> = samples.into_iter().collect();
+pub fn mean<O: Copy + Ord>(samples: impl IntoIterator<Item = (O, f64)>) -> Option<Interval> {
+    let samples: Vec<(O, f64)> = samples.into_iter().collect();
     let count = samples.len() as f64;
     let mean = samples.iter().map(|(_, value)| value).sum::<f64>() / count;
     let mut origins = BTreeMap::new();
@@ -53,7 +67,9 @@ pub fn mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Int
 }
 
 /// The geometric mean of positive samples: the [`mean`] of their logarithms.
-pub fn geometric_mean<'a>(samples: impl IntoIterator<Item = (&'a str, f64)>) -> Option<Interval> {
+pub fn geometric_mean<O: Copy + Ord>(
+    samples: impl IntoIterator<Item = (O, f64)>,
+) -> Option<Interval> {
     let logarithms = samples
         .into_iter()
         .map(|(origin, sample)| (origin, sample.ln()));

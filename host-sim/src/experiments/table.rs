@@ -1,10 +1,31 @@
 //! Comparisons as tables.
 
-use std::fmt::Write;
+use std::fmt::{Display, Write};
 
 use super::row::Metric;
-use super::statistics::{Comparison, Interval, in_order};
+use super::statistics::{Comparison, Conditions, Interval, in_order};
 use crate::planners::PlannerKind;
+
+/// Comma-separated values, row by row.
+pub(super) struct Csv(csv::Writer<Vec<u8>>);
+
+impl Csv {
+    pub(super) fn new<const N: usize>(columns: [&str; N]) -> Self {
+        let mut table = Self(csv::Writer::from_writer(Vec::new()));
+        table.add(columns.each_ref().map(|column| column as &dyn Display));
+        table
+    }
+
+    pub(super) fn add<const N: usize>(&mut self, fields: [&dyn Display; N]) {
+        let row = fields.map(|field| field.to_string());
+        self.0.write_record(row).expect("rows are of one length");
+    }
+
+    pub(super) fn text(self) -> String {
+        let text = self.0.into_inner().expect("a Vec takes everything");
+        String::from_utf8(text).expect("fields are text")
+    }
+}
 
 /// Markdown: for each planner and set of conditions a table of ratios, families
 /// as columns, numbers of robots as rows; then the runs that were not complete.
@@ -105,33 +126,53 @@ fn cell(interval: Option<Interval>, digits: usize) -> String {
 
 /// One line for each comparison, numbers in full.
 pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
-    let mut text = String::from(
-        "metric,range,sync,loss,planner,family,robots,runs,incomplete,\
-         ticks,ticks_low,ticks_high,pairs,ratio,ratio_low,ratio_high\n",
-    );
+    let mut csv = Csv::new([
+        "metric",
+        "range",
+        "sync",
+        "loss",
+        "planner",
+        "family",
+        "robots",
+        "runs",
+        "incomplete",
+        "ticks",
+        "ticks_low",
+        "ticks_high",
+        "pairs",
+        "ratio",
+        "ratio_low",
+        "ratio_high",
+    ]);
     for row in comparisons {
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{},{},{},{},{}",
-            metric.name(),
-            row.conditions.range,
-            row.conditions.sync,
-            row.conditions.loss,
-            row.planner,
-            row.family.as_deref().unwrap_or("all"),
-            row.robots.map_or("all".into(), |robots| robots.to_string()),
-            row.runs,
-            row.incomplete,
-            fields(row.ticks),
-            row.pairs,
-            fields(row.ratio),
-        );
+        let Conditions { range, sync, loss } = row.conditions;
+        let robots = row.robots.map_or("all".into(), |robots| robots.to_string());
+        let ([ticks, ticks_low, ticks_high], [ratio, low, high]) =
+            (fields(row.ticks), fields(row.ratio));
+        csv.add([
+            &metric.name(),
+            &range,
+            &sync,
+            &loss,
+            &row.planner,
+            &row.family.as_deref().unwrap_or("all"),
+            &robots,
+            &row.runs,
+            &row.incomplete,
+            &ticks,
+            &ticks_low,
+            &ticks_high,
+            &row.pairs,
+            &ratio,
+            &low,
+            &high,
+        ]);
     }
-    text
+    csv.text()
 }
 
-fn fields(interval: Option<Interval>) -> String {
-    interval.map_or(",,".into(), |Interval { mean, low, high }| {
-        format!("{mean},{low},{high}")
+fn fields(interval: Option<Interval>) -> [String; 3] {
+    interval.map_or_else(Default::default, |Interval { mean, low, high }| {
+        [mean, low, high].map(|number| number.to_string())
     })
 }

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use planner_core::{Extent, Planner};
 
 use super::{Outcome, Progress, Running, Stepping};
+use crate::baselines::{Bmilrv, Marks};
 use crate::fleet::{Fleet, Rules};
 use crate::medium;
-use crate::peers::{Bmilrv, Marks};
 use crate::planners::{PlannerKind, Setup};
 use crate::scenario::ScenarioError;
 use crate::scenario::grid::Scenario;

@@ -12,12 +12,12 @@ use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
 
+use crate::baselines::surveys::{Follower, Guide, Rounds, assign};
 use crate::dice::Dice;
 use crate::fleet::Sent;
 use crate::record::Deed;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::scenario::{Faults, MediumKind, ScenarioError};
-use crate::survey::baselines::{Follower, Guide, Rounds, assign};
 use crate::survey::{Record, Safety, Trace};
 use crate::terrain::{Terrain, look};
 

@@ -1,8 +1,5 @@
 //! What fleets of flying robots leave behind, drawn and summed up.
 
-pub mod baselines;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod figures;
 mod mapped;
 mod summary;
 mod trace;

@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use super::list::{Figure, Layout};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Series, Style};
-use crate::experiments::statistics::{Interval, geometric_mean, mean};
+use crate::experiments::statistics::{geometric_mean, mean};
 use crate::experiments::{ExecuteError, Key, Metric, Row, Shard, execute};
 use crate::planners::PlannerKind;
 
@@ -150,7 +150,7 @@ impl Measured {
             let samples = rows.filter(|row| belongs(row, place)).filter_map(|row| {
                 Some((row.world.as_str(), row.metric(Metric::Seen)?.max(1).into()))
             });
-            geometric_mean(samples).map(|interval| at(number as f64, interval))
+            geometric_mean(samples).map(|interval| interval.at(number as f64))
         };
         places.iter().enumerate().filter_map(point).collect()
     }
@@ -172,7 +172,7 @@ impl Measured {
                     100.0 * f64::from(seen) / f64::from(row.reachable_cells),
                 )
             };
-            mean(runs.iter().map(share)).map(|interval| at(tick as f64, interval))
+            mean(runs.iter().map(share)).map(|interval| interval.at(tick as f64))
         };
         (0..=CURVE).filter_map(point).collect()
     }
@@ -184,15 +184,6 @@ impl Measured {
             .filter(|(row, _)| row.world == map)
             .map(|(row, seen)| seen.partition_point(|&cells| cells < row.seen_cells));
         ends.max().unwrap_or(0)
-    }
-}
-
-fn at(x: f64, Interval { mean, low, high }: Interval) -> Point {
-    Point {
-        x,
-        y: mean,
-        low,
-        high,
     }
 }
 

@@ -3,7 +3,9 @@
 mod list;
 mod measure;
 mod page;
+mod surveys;
 
 pub use list::{Effort, Figure, Layout, figures};
 pub use measure::{Measured, measure};
-pub use page::page;
+pub use page::{Drawn, page};
+pub use surveys::{FIGURES as SURVEYS, figure as survey};

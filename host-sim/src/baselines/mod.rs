@@ -9,6 +9,7 @@ mod greedy;
 mod groups;
 mod minpos;
 mod peer;
+pub mod surveys;
 mod waves;
 
 pub use bmilrv::{Bmilrv, Marks};

@@ -1,15 +1,14 @@
 //! Time to see everything by number of robots, and by loss.
 
-use std::fmt::Write as _;
-
-use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
+use super::{Drawn, Fleet, METHODS, ROBOTS, SIDE, Setup, colour};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
 use crate::experiments::Interval;
+use crate::experiments::table::Csv;
 use crate::scenario::MediumKind;
 use crate::scenario::ScenarioError;
 use crate::scenario::heights::Planner;
 
-pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
+pub(super) fn by_robots(terrains: u64) -> Result<Drawn, ScenarioError> {
     let fleets = [1, 2, 4, 8, 16];
     let mut rows = Vec::new();
     for planner in METHODS {
@@ -35,9 +34,20 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
             .and_then(|fleet| fleet.ticks(2))
             .map_or(f64::NAN, |i| i.mean)
     };
-    let mut csv = String::from(
-        "planner,robots,medium,loss,ticks_to_95,ticks_to_99,ticks_to_seen,half_interval,to_greedy,to_greedy_unique,mean_work,max_work\n",
-    );
+    let mut csv = Csv::new([
+        "planner",
+        "robots",
+        "medium",
+        "loss",
+        "ticks_to_95",
+        "ticks_to_99",
+        "ticks_to_seen",
+        "half_interval",
+        "to_greedy",
+        "to_greedy_unique",
+        "mean_work",
+        "max_work",
+    ]);
     for fleet in &rows {
         let Setup {
             planner,
@@ -53,12 +63,22 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
             .mean(|run| Some(run.mean_work()))
             .map_or(f64::NAN, |i| i.mean);
         let max = fleet.runs.iter().map(|run| run.max_work).max().unwrap_or(0);
-        let _ = writeln!(
-            csv,
-            "{planner},{robots},{medium},{loss},{t95:.1},{t99:.1},{all:.1},{half:.1},{:.3},{:.3},{work:.0},{max}",
-            all / greedy(Planner::Greedy, robots),
-            all / greedy(Planner::GreedyUnique, robots),
-        );
+        let to_greedy = all / greedy(Planner::Greedy, robots);
+        let to_unique = all / greedy(Planner::GreedyUnique, robots);
+        csv.add([
+            &planner,
+            &robots,
+            &medium,
+            &loss,
+            &format!("{t95:.1}"),
+            &format!("{t99:.1}"),
+            &format!("{all:.1}"),
+            &format!("{half:.1}"),
+            &format!("{to_greedy:.3}"),
+            &format!("{to_unique:.3}"),
+            &format!("{work:.0}"),
+            &max,
+        ]);
     }
     let of = |planner: Planner, medium| {
         rows.iter()
@@ -74,7 +94,7 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
                 low: share(low),
                 high: share(high),
             };
-            Some(point(place as f64, scaled))
+            Some(scaled.at(place as f64))
         };
         of(planner, MediumKind::Ideal)
             .enumerate()
@@ -82,7 +102,7 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
             .collect()
     };
     let lossy = |planner: Planner| {
-        let ticks = |(place, fleet): (usize, &Fleet)| Some(point(place as f64, fleet.ticks(2)?));
+        let ticks = |(place, fleet): (usize, &Fleet)| Some(fleet.ticks(2)?.at(place as f64));
         of(planner, MediumKind::Radio)
             .enumerate()
             .filter_map(ticks)
@@ -95,7 +115,7 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
         points,
     };
     let places = |of: &[String]| of.to_vec();
-    Ok(Figure {
+    Ok(Drawn {
         id: "fcao-robots",
         title: "Time to see everything by number of robots, and by loss".into(),
         caption: format!(
@@ -124,6 +144,8 @@ pub(super) fn by_robots(terrains: u64) -> Result<Figure, ScenarioError> {
                 },
             ],
         },
-        csv,
+        csv: csv.text(),
+        commands: String::new(),
+        table: String::new(),
     })
 }

@@ -1,9 +1,8 @@
 //! What is mapped of a town, in nodes of an octree [Renzaglia2019 fig. 6].
 
-use std::fmt::Write as _;
-
-use super::{Figure, METHODS, colour};
+use super::{Drawn, METHODS, colour};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Series, Style};
+use crate::experiments::table::Csv;
 use crate::run::heights::run;
 use crate::run::voxels;
 use crate::scenario::ScenarioError;
@@ -14,21 +13,16 @@ use crate::survey::octree;
 use crate::terrain::Terrain;
 
 /// Nodes of the octree of what is mapped, every tenth step.
-pub(super) fn town() -> Result<Figure, ScenarioError> {
+pub(super) fn town() -> Result<Drawn, ScenarioError> {
     const TOWN: u16 = 80;
     const VOXELS: u16 = 40;
-    let mut csv = String::from("planner,tick,nodes\n");
+    let mut csv = Csv::new(["planner", "tick", "nodes"]);
     let mut curve = |name: String, color, end: u32, nodes: &dyn Fn(u32) -> usize| {
         let ticks = (0..end).step_by(10).chain([end]);
         let points = ticks.map(|tick| {
             let nodes = nodes(tick);
-            let _ = writeln!(csv, "{name},{tick},{nodes}");
-            Point {
-                x: f64::from(tick),
-                y: nodes as f64,
-                low: f64::NAN,
-                high: f64::NAN,
-            }
+            csv.add([&name, &tick, &nodes]);
+            Point::certain(f64::from(tick), nodes as f64)
         });
         Series {
             points: points.collect(),
@@ -55,7 +49,7 @@ pub(super) fn town() -> Result<Figure, ScenarioError> {
         y: "octree nodes".into(),
         series,
     };
-    Ok(Figure {
+    Ok(Drawn {
         id: "fcao6",
         title: "OctoMap nodes mapped in town by 2 robots".into(),
         caption: format!(
@@ -72,6 +66,8 @@ pub(super) fn town() -> Result<Figure, ScenarioError> {
                 panel("voxels: voxel-survey".into(), vec![inside]),
             ],
         },
-        csv,
+        csv: csv.text(),
+        commands: String::new(),
+        table: String::new(),
     })
 }

@@ -1,11 +1,10 @@
 //! Surface seen over time [Renzaglia2019 fig. 3].
 
-use std::fmt::Write as _;
-
-use super::{Figure, Fleet, ROBOTS, SIDE};
+use super::{Drawn, Fleet, ROBOTS, SIDE};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Style};
+use crate::experiments::table::Csv;
 
-pub(super) fn over_time(fleets: &[Fleet]) -> Figure {
+pub(super) fn over_time(fleets: &[Fleet]) -> Drawn {
     let panel = |title: &str, y: &str, points: &dyn Fn(&Fleet) -> Vec<Point>| Panel {
         title: title.into(),
         x: Axis::Numbers("time (ticks)".into()),
@@ -17,15 +16,20 @@ pub(super) fn over_time(fleets: &[Fleet]) -> Figure {
     };
     let seen = |fleet: &Fleet| fleet.curve(|run| &run.seen, true);
     let work = |fleet: &Fleet| fleet.curve(|run| &run.work, false);
-    let mut csv = String::from("planner,tick,seen_percent,work_per_decision\n");
+    let mut csv = Csv::new(["planner", "tick", "seen_percent", "work_per_decision"]);
     for fleet in fleets {
         for (seen, work) in seen(fleet).iter().zip(work(fleet)) {
             let planner = fleet.setup.planner;
-            let _ = writeln!(csv, "{planner},{},{:.3},{:.1}", seen.x, seen.y, work.y);
+            csv.add([
+                &planner,
+                &seen.x,
+                &format!("{:.3}", seen.y),
+                &format!("{:.1}", work.y),
+            ]);
         }
     }
     let terrains = fleets[0].runs.len();
-    Figure {
+    Drawn {
         id: "fcao3",
         title: "Surface seen over time, and the work of a decision".into(),
         caption: format!(
@@ -41,6 +45,8 @@ pub(super) fn over_time(fleets: &[Fleet]) -> Figure {
                 panel("work", "work of a decision", &work),
             ],
         },
-        csv,
+        csv: csv.text(),
+        commands: String::new(),
+        table: String::new(),
     }
 }

@@ -1,15 +1,14 @@
 //! The work of a decision by size of the map and of the fleet.
 
-use std::fmt::Write as _;
-
-use super::{Figure, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, point};
+use super::{Drawn, Fleet, METHODS, ROBOTS, SIDE, Setup, colour};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
+use crate::experiments::table::Csv;
 use crate::scenario::ScenarioError;
 
-pub(super) fn work(terrains: u64) -> Result<Figure, ScenarioError> {
+pub(super) fn work(terrains: u64) -> Result<Drawn, ScenarioError> {
     let sides = [60u16, 100, 150, 200];
     let fleets = [1usize, 2, 4, 8, 16];
-    let mut csv = String::from("planner,side,robots,mean_work,max_work\n");
+    let mut csv = Csv::new(["planner", "side", "robots", "mean_work", "max_work"]);
     let mut curves: [Vec<Series>; 2] = Default::default();
     for planner in METHODS {
         let mut measure = |setups: Vec<Setup>| -> Result<Series, ScenarioError> {
@@ -18,14 +17,10 @@ pub(super) fn work(terrains: u64) -> Result<Figure, ScenarioError> {
                 let fleet = Fleet::new(setup, terrains)?;
                 let mean = fleet.mean(|run| Some(run.mean_work()));
                 let max = fleet.runs.iter().map(|run| run.max_work).max().unwrap_or(0);
-                points.extend(mean.map(|interval| point(place as f64, interval)));
-                let _ = writeln!(
-                    csv,
-                    "{planner},{},{},{:.0},{max}",
-                    setup.side,
-                    setup.robots,
-                    mean.map_or(f64::NAN, |interval| interval.mean),
-                );
+                points.extend(mean.map(|interval| interval.at(place as f64)));
+                let mean = mean.map_or(f64::NAN, |interval| interval.mean);
+                let mean = format!("{mean:.0}");
+                csv.add([&planner, &setup.side, &setup.robots, &mean, &max]);
             }
             Ok(Series {
                 name: planner.to_string(),
@@ -49,7 +44,7 @@ pub(super) fn work(terrains: u64) -> Result<Figure, ScenarioError> {
         y: "mean work of a decision".into(),
         series,
     };
-    Ok(Figure {
+    Ok(Drawn {
         id: "fcao-work",
         title: "The work of a decision by size of the map and of the fleet".into(),
         caption: format!(
@@ -74,6 +69,8 @@ pub(super) fn work(terrains: u64) -> Result<Figure, ScenarioError> {
                 ),
             ],
         },
-        csv,
+        csv: csv.text(),
+        commands: String::new(),
+        table: String::new(),
     })
 }

@@ -9,13 +9,14 @@ mod work;
 
 use rayon::prelude::*;
 
-use super::Trace;
-use crate::draw::chart::{Chart, Point, Series, Style};
+use super::Drawn;
+use crate::draw::chart::{Point, Series, Style};
 use crate::experiments::{Interval, mean};
 use crate::run::heights::run;
 use crate::scenario::MediumKind;
 use crate::scenario::ScenarioError;
 use crate::scenario::heights::{Planner, Scenario};
+use crate::survey::Trace;
 use crate::terrain::Terrain;
 
 /// The methods that are compared, in the order of the legends.
@@ -36,27 +37,12 @@ const ROBOTS: usize = 8;
 /// Names of the figures.
 pub const FIGURES: [&str; 5] = ["fcao3", "fcao4", "fcao6", "fcao-robots", "fcao-work"];
 
-/// A figure with the table behind it.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// Short name: that of its files.
-    pub id: &'static str,
-    /// What is shown.
-    pub title: String,
-    /// Where it is from, and how it is to be read.
-    pub caption: String,
-    /// What is drawn.
-    pub chart: Chart,
-    /// The numbers, comma-separated.
-    pub csv: String,
-}
-
 /// Makes that one of the [`FIGURES`] over the Gaussian terrains 0 to `terrains` - 1;
 /// `None` if there is no such figure.
 ///
 /// # Errors
 /// None with the set-up used here.
-pub fn figure(id: &str, terrains: u64) -> Result<Option<Figure>, ScenarioError> {
+pub fn figure(id: &str, terrains: u64) -> Result<Option<Drawn>, ScenarioError> {
     let fleets = || -> Result<Vec<Fleet>, ScenarioError> {
         METHODS
             .iter()
@@ -156,7 +142,7 @@ impl Fleet {
 
     /// The mean over the terrains of what `value` gives; runs without it are left out.
     fn mean(&self, value: impl Fn(&Run) -> Option<f64>) -> Option<Interval> {
-        interval(self.runs.iter().filter_map(value))
+        mean((0u32..).zip(self.runs.iter().filter_map(value)))
     }
 
     fn ticks(&self, share: usize) -> Option<Interval> {
@@ -186,7 +172,7 @@ impl Fleet {
                 let last = values.last().filter(|_| stays);
                 values.get(tick).or(last).copied()
             };
-            Some(point(tick as f64, self.mean(value)?))
+            Some(self.mean(value)?.at(tick as f64))
         };
         (0..=end.unwrap_or(0) as usize).filter_map(at).collect()
     }
@@ -198,27 +184,6 @@ impl Fleet {
             style,
             points,
         }
-    }
-}
-
-fn interval(values: impl Iterator<Item = f64>) -> Option<Interval> {
-    let values: Vec<(String, f64)> = (0..)
-        .zip(values)
-        .map(|(i, v): (u32, f64)| (i.to_string(), v))
-        .collect();
-    mean(
-        values
-            .iter()
-            .map(|(terrain, value)| (terrain.as_str(), *value)),
-    )
-}
-
-fn point(x: f64, Interval { mean, low, high }: Interval) -> Point {
-    Point {
-        x,
-        y: mean,
-        low,
-        high,
     }
 }
 

@@ -1,12 +1,11 @@
 //! Time to see everything, terrain by terrain [Renzaglia2019 fig. 4].
 
-use std::fmt::Write as _;
-
-use super::{Figure, Fleet, ROBOTS, SIDE, point};
+use super::{Drawn, Fleet, ROBOTS, SIDE};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Style};
+use crate::experiments::table::Csv;
 use crate::scenario::heights::Planner;
 
-pub(super) fn final_times(fleets: &[Fleet]) -> Figure {
+pub(super) fn final_times(fleets: &[Fleet]) -> Drawn {
     let mut order: Vec<usize> = (0..fleets[0].runs.len()).collect();
     let reference = fleets
         .iter()
@@ -17,28 +16,27 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Figure {
     let single = |fleet: &Fleet| {
         let time = |(place, &terrain): (usize, &usize)| {
             let value = f64::from(fleet.runs[terrain].ticks[2]?);
-            Some(Point {
-                x: place as f64,
-                y: value,
-                low: f64::NAN,
-                high: f64::NAN,
-            })
+            Some(Point::certain(place as f64, value))
         };
         order.iter().enumerate().filter_map(time).collect()
     };
     let averages = |number: usize, fleet: &Fleet| {
-        let mean = fleet
-            .ticks(2)
-            .map(|interval| point(number as f64, interval));
+        let mean = fleet.ticks(2).map(|interval| interval.at(number as f64));
         mean.into_iter().collect()
     };
-    let mut csv = String::from("planner,terrain,ticks_to_95,ticks_to_99,ticks_to_seen\n");
+    let mut csv = Csv::new([
+        "planner",
+        "terrain",
+        "ticks_to_95",
+        "ticks_to_99",
+        "ticks_to_seen",
+    ]);
     for fleet in fleets {
         for (terrain, run) in fleet.runs.iter().enumerate() {
             let [a, b, c] = run
                 .ticks
                 .map(|t| t.map_or(String::new(), |t| t.to_string()));
-            let _ = writeln!(csv, "{},{terrain},{a},{b},{c}", fleet.setup.planner);
+            csv.add([&fleet.setup.planner, &terrain, &a, &b, &c]);
         }
     }
     let names: Vec<String> = fleets
@@ -46,7 +44,7 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Figure {
         .map(|fleet| fleet.setup.planner.to_string())
         .collect();
     let duration = "ticks until every column is seen";
-    Figure {
+    Drawn {
         id: "fcao4",
         title: "Time to see everything, terrain by terrain".into(),
         caption: format!(
@@ -79,7 +77,9 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Figure {
                 },
             ],
         },
-        csv,
+        csv: csv.text(),
+        commands: String::new(),
+        table: String::new(),
     }
 }
 

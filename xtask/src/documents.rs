@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result, anyhow, bail};
-use clap::Parser;
+use clap::Parser as _;
+use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use serde_json::Value;
 
 use crate::host;
 use crate::shell::{self, cargo};
 
-/// Checks every `cargo` line in the code blocks of the documents: options of
-/// `cargo xtask`, subcommands and options of the simulator, files of fixtures/.
+/// Checks every `cargo` command in the documents: options of `cargo xtask`, subcommands
+/// and options of the simulator, packages, tests and features, files of fixtures/.
 pub(crate) fn check() -> Result<String> {
     let documents = documents()?;
     let mut commands = 0;
@@ -48,52 +49,66 @@ fn documents() -> Result<Vec<PathBuf>> {
     Ok(documents)
 }
 
-/// The `cargo` commands of the code blocks, with their line numbers.
+/// The `cargo` commands of code blocks and of code in text and tables, with their line
+/// numbers.
 fn commands_in(text: &str) -> Vec<(usize, String)> {
-    let mut commands = Vec::new();
+    let mut commands: Vec<(usize, String)> = Vec::new();
     let mut in_block = false;
-    let mut lines = text.lines().zip(1..);
-    while let Some((line, number)) = lines.next() {
-        let line = line.trim();
-        if line.starts_with("```") {
-            in_block = !in_block;
-        }
-        let line = line.trim_start_matches("$ ");
-        if in_block && line.starts_with("cargo ") {
-            let mut command = line.to_owned();
-            while let Some(beginning) = command.strip_suffix('\\') {
-                command = beginning.to_owned();
-                command.extend(lines.next().map(|(next, _)| next.trim()));
+    for (event, place) in Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter() {
+        let line = 1 + text[..place.start].matches('\n').count();
+        match event {
+            Event::Start(Tag::CodeBlock(_)) => in_block = true,
+            Event::End(TagEnd::CodeBlock) => in_block = false,
+            Event::Text(code) if in_block => {
+                for (code, line) in code.lines().zip(line..) {
+                    match commands.last_mut() {
+                        Some((_, begun)) if begun.ends_with('\\') => {
+                            begun.pop();
+                            begun.push_str(code);
+                        }
+                        _ => commands.push((line, code.to_owned())),
+                    }
+                }
             }
-            let end = command.find(" #").unwrap_or(command.len());
-            commands.push((number, command[..end].trim().to_owned()));
+            Event::Code(code) => commands.push((line, code.to_string())),
+            _ => {}
         }
     }
+    commands.retain_mut(|(_, command)| {
+        let end = command.find(" #").unwrap_or(command.len());
+        let words = command[..end].split_whitespace();
+        // Before a command may stand a prompt and the environment.
+        let words = words.skip_while(|word| *word == "$" || word.contains('='));
+        *command = words.collect::<Vec<_>>().join(" ");
+        command.starts_with("cargo ")
+    });
     commands
 }
 
 fn exists(command: &str) -> Result<()> {
-    let words: Vec<&str> = command.split_whitespace().skip(1).collect();
+    // What is left out.
+    let words = command.split_whitespace().skip(1).filter(|&it| it != "…");
+    let words: Vec<&str> = words.collect();
     for word in words.iter().filter(|word| word.starts_with("fixtures/")) {
         if !shell::root().join(word).exists() {
             bail!("{word} does not exist");
         }
     }
-    match words.first() {
-        Some(&"xtask") => crate::Cli::try_parse_from(&words)
+    match words[..] {
+        ["xtask"] => Ok(()),
+        ["xtask", ..] => crate::Cli::try_parse_from(&words)
             .map(drop)
             .or_else(is_help),
-        Some(&"run") => simulator_takes(&words),
-        Some(&word) if !word.starts_with(['-', '+']) => {
+        ["run", ..] => simulator_takes(&words),
+        [word, ..] if !word.starts_with(['-', '+']) => {
             let known = cargo(["--list"]).output()?.stdout;
-            if known
+            let mut known = known
                 .lines()
-                .any(|line| line.split_whitespace().next() == Some(word))
-            {
-                Ok(())
-            } else {
-                bail!("Cargo has no command {word}")
+                .filter_map(|line| line.split_whitespace().next());
+            if !known.any(|known| known == word) {
+                bail!("Cargo has no command {word}");
             }
+            Workspace::read()?.has(&words)
         }
         _ => Ok(()),
     }
@@ -117,7 +132,10 @@ fn simulator_takes(words: &[&str]) -> Result<()> {
     let (cargo_words, ours) = words.split_at(split);
     let mut ours = ours.iter().skip(1).copied().peekable();
     let subcommand = ours.next_if(|word| !word.starts_with('-'));
-    let help = shell::command(program(cargo_words)?)
+    let Some(program) = program(cargo_words)? else {
+        return Ok(());
+    };
+    let help = shell::command(program)
         .args(subcommand)
         .arg("--help")
         .output()?;
@@ -138,54 +156,104 @@ fn simulator_takes(words: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// The program that `cargo run …` runs. An optimised one would say the same; this one
-/// is built for the tests anyway.
-fn program(cargo_words: &[&str]) -> Result<PathBuf> {
-    let mut words = cargo_words.iter().skip(1);
-    let mut program = None;
-    let mut package = None;
-    while let Some(&word) = words.next() {
-        match word {
-            "--release" => {}
-            "-p" => package = words.next().copied(),
-            "--example" => program = words.next().map(|name| format!("examples/{name}")),
-            _ => bail!("whether Cargo takes {word} is not known here"),
-        }
+/// The program that `cargo run …` runs, or nothing for another than the simulator's. An
+/// optimised one would say the same; this one is built for the tests anyway.
+fn program(cargo_words: &[&str]) -> Result<Option<PathBuf>> {
+    let workspace = Workspace::read()?;
+    workspace.has(cargo_words)?;
+    let value = |option: &str| {
+        let place = cargo_words.iter().position(|&word| word == option)?;
+        cargo_words.get(place + 1).copied()
+    };
+    if value("-p").is_some_and(|package| package != "host-sim") {
+        return Ok(None);
     }
-    let (default_members, host_sim) = runnable()?;
-    match package {
-        None if default_members == ["host-sim"] => {}
-        None => bail!("`cargo run` could run any of {default_members:?}"),
-        Some("host-sim") if host_sim == ["host-sim"] => {}
-        Some(package) => bail!("what `cargo run -p {package}` runs is not known here"),
+    let programs = match value("-p") {
+        None => workspace.programs(&|package| workspace.defaults.contains(&package["id"])),
+        Some(_) => workspace.programs(&|package| package["name"] == "host-sim"),
+    };
+    if programs != ["host-sim"] {
+        bail!("`cargo run` could run any of {programs:?}");
     }
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     if FOLDER.get().is_none() {
         let _ = FOLDER.set(host::build_simulator()?);
     }
     let folder = FOLDER.get().context("it was just set")?;
-    Ok(folder.join(program.as_deref().unwrap_or("host-sim")))
+    Ok(Some(match value("--example") {
+        Some(example) => folder.join("examples").join(example),
+        None => folder.join("host-sim"),
+    }))
 }
 
-/// The programs of the default members of the workspace, and those of host-sim.
-fn runnable() -> Result<(Vec<String>, Vec<String>)> {
-    let metadata = cargo(["metadata", "--no-deps", "--format-version=1"]).output()?;
-    let metadata: Value = serde_json::from_slice(&metadata.bytes)?;
-    let list = |of: &Value| of.as_array().cloned().unwrap_or_default();
-    let defaults = list(&metadata["workspace_default_members"]);
-    let programs = |is_meant: &dyn Fn(&Value) -> bool| -> Vec<String> {
-        list(&metadata["packages"])
-            .iter()
-            .filter(|package| is_meant(package))
+/// What Cargo knows of the packages.
+struct Workspace {
+    packages: Vec<Value>,
+    defaults: Vec<Value>,
+}
+
+impl Workspace {
+    fn read() -> Result<Self> {
+        let metadata = cargo(["metadata", "--no-deps", "--format-version=1"]).output()?;
+        let metadata: Value = serde_json::from_slice(&metadata.bytes)?;
+        Ok(Self {
+            packages: list(&metadata["packages"]),
+            defaults: list(&metadata["workspace_default_members"]),
+        })
+    }
+
+    /// Whether there are the packages, targets and features that a command names before
+    /// a `--`.
+    fn has(&self, words: &[&str]) -> Result<()> {
+        let mut words = words.iter().take_while(|&&word| word != "--");
+        while let Some(&option) = words.next() {
+            let target = option.trim_start_matches("--");
+            let is_there = |name: &str| match option {
+                "-p" => self.packages.iter().any(|package| package["name"] == name),
+                "--features" => {
+                    let name = name.rsplit('/').next().unwrap_or(name);
+                    self.packages
+                        .iter()
+                        .any(|it| !it["features"][name].is_null())
+                }
+                _ => self
+                    .targets(&|_| true)
+                    .iter()
+                    .any(|it| it["name"] == name && list(&it["kind"]).contains(&target.into())),
+            };
+            if matches!(
+                option,
+                "-p" | "--features" | "--test" | "--example" | "--bin"
+            ) {
+                let name = words.next().context("an option without a value")?;
+                if !is_there(name) {
+                    bail!("there is no {option} {name}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn targets(&self, is_meant: &dyn Fn(&Value) -> bool) -> Vec<Value> {
+        let packages = self.packages.iter().filter(|package| is_meant(package));
+        packages
             .flat_map(|package| list(&package["targets"]))
-            .filter(|target| list(&target["kind"]).contains(&"bin".into()))
-            .filter_map(|target| Some(target["name"].as_str()?.to_owned()))
             .collect()
-    };
-    Ok((
-        programs(&|package| defaults.contains(&package["id"])),
-        programs(&|package| package["name"] == "host-sim"),
-    ))
+    }
+
+    fn programs(&self, is_meant: &dyn Fn(&Value) -> bool) -> Vec<String> {
+        let targets = self.targets(is_meant);
+        let programs = targets
+            .iter()
+            .filter(|it| list(&it["kind"]).contains(&"bin".into()));
+        programs
+            .filter_map(|it| Some(it["name"].as_str()?.to_owned()))
+            .collect()
+    }
+}
+
+fn list(of: &Value) -> Vec<Value> {
+    of.as_array().cloned().unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -194,12 +262,27 @@ mod tests {
 
     #[test]
     fn commands_are_found() {
-        let text =
-            "cargo is a tool\n```sh\n$ cargo xtask test # all\ncargo run -- \\\n  map\n```\n";
+        let text = "\
+cargo is a tool, `cargo
+doc` a command
+
+| what | command |
+|---|---|
+| all | `A=1 cargo xtask test` |
+
+```sh
+$ cargo xtask test # all
+cargo run -- \\
+  map
+```
+";
         let expected = [
-            (3, "cargo xtask test".to_owned()),
-            (4, "cargo run -- map".to_owned()),
-        ];
+            (1, "cargo doc"),
+            (6, "cargo xtask test"),
+            (9, "cargo xtask test"),
+            (10, "cargo run -- map"),
+        ]
+        .map(|(line, command)| (line, command.to_owned()));
         assert_eq!(commands_in(text), expected);
     }
 
@@ -210,6 +293,10 @@ mod tests {
         exists("cargo xtask tset").unwrap_err();
         exists("cargo xtask test --lsit").unwrap_err();
         exists("cargo no-such-command").unwrap_err();
+        exists("cargo test -p xtask --test budget").unwrap();
+        exists("cargo test --test budgie").unwrap_err();
+        exists("cargo build --features parquet").unwrap();
+        exists("cargo build --features parakeet").unwrap_err();
         exists("cargo run -- explore fixtures/maps/nowhere").unwrap_err();
     }
 }

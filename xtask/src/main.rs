@@ -43,10 +43,12 @@ mod fuzz;
 mod host;
 mod install;
 mod lab;
+mod lines;
 mod shell;
 mod tools;
 mod worst;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -93,6 +95,12 @@ enum Task {
     LabWeb,
     /// Writes the header of the C interface, c-api/include/planner.h.
     CHeader,
+    /// Counts the lines of code of each package, without comments, blank lines and tests.
+    Lines {
+        /// Where to count.
+        #[arg(default_value = ".")]
+        folder: PathBuf,
+    },
     /// Explores random small worlds until one of them goes wrong.
     Soak {
         /// How many worlds.
@@ -114,6 +122,7 @@ fn main() -> ExitCode {
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::LabWeb => lab::build_page().map(|size| println!("{size}")),
         Task::CHeader => c_interface::write_header(),
+        Task::Lines { folder } => lines::print(&folder),
         Task::Soak { runs } => soak(runs),
     };
     match outcome {

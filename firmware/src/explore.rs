@@ -1,7 +1,7 @@
 //! The robot's main loop, with a world and motors that are only pretended.
 
 use planner_core::sight::look;
-use planner_core::{Action, Cell, Motion, Planner, Stop};
+use planner_core::{Action, Cell, Inspect, Motion, Stop};
 
 use crate::World;
 
@@ -11,7 +11,7 @@ pub struct Exploration {
     pub ticks: u32,
     /// Ticks in which it moved.
     pub steps: u32,
-    /// The largest work of one tick, as [`Planner::work`] counts it.
+    /// The largest work of one tick, as [`Inspect::work`] counts it.
     pub work: u32,
     /// Why it stopped; `None` where it never did.
     pub stop: Option<Stop>,
@@ -25,7 +25,7 @@ pub struct Exploration {
 /// It is given eight ticks for every cell; a planner that takes more goes round
 /// in circles.
 pub fn explore<const TW: usize, const TH: usize>(
-    planner: &mut dyn Planner<TW, TH>,
+    planner: &mut dyn Inspect<TW, TH>,
     world: &World,
     range: u8,
 ) -> Exploration {
@@ -67,7 +67,7 @@ pub fn explore<const TW: usize, const TH: usize>(
 /// any more when the planner decides.
 #[inline(never)]
 fn observe<const TW: usize, const TH: usize>(
-    planner: &mut dyn Planner<TW, TH>,
+    planner: &mut dyn Inspect<TW, TH>,
     world: &World,
     position: Cell,
     range: u8,

@@ -28,7 +28,7 @@ use planner_core::cao::{Degree, Frame, Model, Sample};
 use planner_core::explorer::{Config, Explorer};
 use planner_core::radio::MAX_LEN;
 use planner_core::rng::Rng;
-use planner_core::{Action, Cell, Direction, Motion, Planner, Point, RobotId};
+use planner_core::{Action, Cell, Direction, Inspect, Motion, Planner, Point, RobotId};
 
 const RANGE: u8 = 5;
 const ROBOTS: usize = 10;

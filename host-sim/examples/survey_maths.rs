@@ -16,10 +16,12 @@ use std::rc::Rc;
 use bridge::SurveyorConfig;
 use clap::Parser;
 use host_sim::experiments::{Interval, mean};
-use host_sim::run::heights::{Here, Host, run, run_on};
+use host_sim::run::heights::{Host, run, run_on};
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::terrain::Terrain;
-use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
+use planner_core::coordinated_survey::CoordinatedSurvey;
+use planner_core::fcao::Fcao;
+use planner_core::survey::{Knowledge, Limits, Pilot, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Point, RobotId};
 
 const PLANNERS: [Planner; 3] = [
@@ -64,7 +66,7 @@ struct Books {
 
 struct Scribe<const T: usize> {
     id: RobotId,
-    robot: Box<dyn Surveyor<T, T>>,
+    robot: Box<dyn Pilot<T, T>>,
     recorded: Option<std::vec::IntoIter<Decision>>,
     own: Rc<RefCell<Decisions>>,
 }
@@ -73,14 +75,20 @@ impl Host for Books {
     fn surveyor<const T: usize>(
         &self,
         extent: Extent,
-        limits: Limits,
+        _limits: Limits,
         planner: SurveyorConfig,
         id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
         let of_robot = |decisions: &Decisions| decisions.get(&id.0).cloned().unwrap_or_default();
+        let robot: Box<dyn Pilot<T, T>> = match planner {
+            SurveyorConfig::Fcao(config) => Box::new(Fcao::<T, T>::new(config, id, extent)?),
+            SurveyorConfig::Coordinated(config) => {
+                Box::new(CoordinatedSurvey::new(config, id, extent)?)
+            }
+        };
         Ok(Box::new(Scribe {
             id,
-            robot: Here.surveyor(extent, limits, planner, id)?,
+            robot,
             recorded: self.recorded.as_ref().map(of_robot).map(Vec::into_iter),
             own: self.own.clone(),
         }))
@@ -91,7 +99,7 @@ impl Host for Books {
     }
 }
 
-impl<const T: usize> Surveyor<T, T> for Scribe<T> {
+impl<const T: usize> Pilot<T, T> for Scribe<T> {
     fn knowledge(&self) -> &Knowledge<T, T> {
         self.robot.knowledge()
     }
@@ -100,8 +108,12 @@ impl<const T: usize> Surveyor<T, T> for Scribe<T> {
         self.robot.knowledge_mut()
     }
 
-    fn tick(&mut self) -> Action<Point> {
-        let own = (self.robot.tick(), self.knowledge().goal());
+    fn decide(&mut self) -> Action<Point> {
+        self.robot.decide()
+    }
+
+    fn act(&mut self) -> Action<Point> {
+        let own = (self.robot.act(), self.robot.knowledge().goal());
         self.own
             .borrow_mut()
             .entry(self.id.0)

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use planner_core::tile::TileIndex;
-use planner_core::{Action, Cell, Direction, Motion, Planner, RobotId, Stop, TileSet, Wait, role};
+use planner_core::{
+    Action, AnyPlanner, Cell, Direction, Motion, RobotId, Stop, TileSet, Wait, role,
+};
 
 use crate::medium::{Medium, Message};
 use crate::record::Reason;
@@ -16,7 +18,7 @@ pub struct Robot<const TW: usize, const TH: usize> {
     /// Its number, which is also its index in the fleet.
     pub id: RobotId,
     /// What decides.
-    pub planner: Box<dyn Planner<TW, TH>>,
+    pub planner: Box<dyn AnyPlanner<TW, TH>>,
     /// Where the body is.
     pub position: Cell,
     /// Whether it still sees, decides, speaks and hears. The body of a dead
@@ -136,7 +138,7 @@ pub struct Rules {
 
 /// Makes the planner of a robot that stands on a cell and knows nothing.
 pub type Build<const TW: usize, const TH: usize> =
-    Box<dyn Fn(RobotId, Cell) -> Box<dyn Planner<TW, TH>>>;
+    Box<dyn Fn(RobotId, Cell) -> Box<dyn AnyPlanner<TW, TH>>>;
 
 /// All robots of a run, in one world.
 pub struct Fleet<const TW: usize, const TH: usize> {

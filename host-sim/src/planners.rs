@@ -8,7 +8,7 @@ use planner_core::ExtentError;
 use planner_core::explorer::{self, Explorer};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::radio::LinkConfig;
-use planner_core::{Cell, Extent, Planner, RobotId};
+use planner_core::{AnyPlanner, Cell, Extent, RobotId};
 use serde::{Deserialize, Serialize};
 
 use crate::baselines::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
@@ -97,7 +97,7 @@ impl PlannerKind {
     pub fn build<const TW: usize, const TH: usize>(
         self,
         setup: Setup,
-    ) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+    ) -> Result<Box<dyn AnyPlanner<TW, TH>>, ExtentError> {
         if let Some(config) = self.on_chip(setup) {
             return on_host(config, setup);
         }
@@ -129,7 +129,7 @@ impl PlannerKind {
 fn on_host<const TW: usize, const TH: usize>(
     config: PlannerConfig,
     setup: Setup,
-) -> Result<Box<dyn Planner<TW, TH>>, ExtentError> {
+) -> Result<Box<dyn AnyPlanner<TW, TH>>, ExtentError> {
     let Setup {
         id, extent, start, ..
     } = setup;

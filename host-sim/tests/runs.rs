@@ -15,7 +15,8 @@ use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::radio::{FrameError, Heard, MAX_LEN};
 use planner_core::{
-    Action, Cell, Direction, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
+    Action, AnyPlanner, Cell, Contact, Direction, Inspect, Learnt, Map, Motion, Planner, RobotId,
+    Sighting, Status, TileSet, Wait,
 };
 
 fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
@@ -166,7 +167,7 @@ fn solid_robots_never_share_a_cell_and_finish_in_a_maze() {
 /// Looks in all four directions from every cell that it comes to, then does what the
 /// planner within decides.
 struct LooksAround<const TW: usize, const TH: usize> {
-    inner: Box<dyn Planner<TW, TH>>,
+    inner: Box<dyn AnyPlanner<TW, TH>>,
     at: Option<Cell>,
     to_come: std::slice::Iter<'static, Direction>,
     look: Option<Wait>,
@@ -216,7 +217,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LooksAround<TW, TH> {
     fn status(&self) -> Status {
         self.inner.status()
     }
+}
 
+impl<const TW: usize, const TH: usize> Contact<TW, TH> for LooksAround<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         self.inner.take_changed()
     }
@@ -228,7 +231,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LooksAround<TW, TH> {
     fn hear(&mut self, id: RobotId, status: Status) {
         self.inner.hear(id, status);
     }
+}
 
+impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LooksAround<TW, TH> {
     fn work(&self) -> u32 {
         self.inner.work()
     }
@@ -243,7 +248,7 @@ impl Host for LookingAround {
         &self,
         kind: PlannerKind,
         setup: Setup,
-    ) -> Box<dyn Planner<TW, TH>> {
+    ) -> Box<dyn AnyPlanner<TW, TH>> {
         Box::new(LooksAround {
             inner: kind.build(setup).unwrap(),
             at: None,

@@ -13,6 +13,87 @@ use crate::tile::{TileIndex, TileSet};
 /// with other robots, [`tick`](Self::tick), and after a move
 /// [`report`](Self::report). No call does I/O, allocates or panics, and each does
 /// a bounded amount of work.
+///
+/// A planner of one's own needs these verbs and nothing else:
+///
+/// ```
+/// use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
+/// use planner_core::sight::look;
+/// use planner_core::{
+///     Action, Activity, Cell, Direction, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting,
+///     Status, Stop,
+/// };
+///
+/// /// Goes straight on, and turns right where something is in the way.
+/// struct Straight {
+///     map: Map<1, 1>,
+///     link: Link<1>,
+///     position: Cell,
+///     heading: Direction,
+/// }
+///
+/// impl Planner<1, 1> for Straight {
+///     fn observe(&mut self, sighting: &Sighting) -> Learnt {
+///         self.position = sighting.centre();
+///         let learnt = self.map.observe(sighting);
+///         self.link.announce(&mut self.map);
+///         learnt
+///     }
+///
+///     fn tick(&mut self) -> Action {
+///         self.link.tick();
+///         if self.map.frontiers() == 0 {
+///             return Action::Stop(Stop::Complete);
+///         }
+///         if !self.map.is_free(self.position.step(self.heading)) {
+///             self.heading = Direction::from_index(self.heading as u8 + 1);
+///             return Action::Wait;
+///         }
+///         Action::Move(self.heading)
+///     }
+///
+///     fn resume(&mut self) {}
+///
+///     fn report(&mut self, motion: Motion) {
+///         if motion == Motion::Moved {
+///             self.position = self.position.step(self.heading);
+///         }
+///     }
+///
+///     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+///         let status = self.status();
+///         self.link.transmit(&self.map, status, buffer)
+///     }
+///
+///     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
+///         self.link.receive(bytes, &mut self.map)
+///     }
+///
+///     fn map(&self) -> &Map<1, 1> {
+///         &self.map
+///     }
+///
+///     fn status(&self) -> Status {
+///         let activity = Activity::stopped_if(self.map.frontiers() == 0);
+///         Status { position: self.position, goal: None, activity }
+///     }
+/// }
+///
+/// let extent = Extent::new(8, 1);
+/// let mut link = Link::vacant();
+/// link.reset(LinkConfig::new(), RobotId(0), extent);
+/// let map = Map::new(extent)?;
+/// let mut robot = Straight { map, link, position: Cell::new(0, 0), heading: Direction::East };
+/// loop {
+///     robot.observe(&look(robot.position, 3, |cell| !extent.contains(cell)));
+///     match robot.tick() {
+///         Action::Move(_) => robot.report(Motion::Moved),
+///         Action::Wait => {}
+///         Action::Stop(stop) => break assert_eq!(stop, Stop::Complete),
+///     }
+/// }
+/// # Ok::<(), planner_core::ExtentError>(())
+/// ```
 pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in what the robot sees from where it stands.
     fn observe(&mut self, sighting: &Sighting) -> Learnt;
@@ -57,7 +138,11 @@ pub trait Planner<const TW: usize, const TH: usize> {
 
     /// What the robot would tell the others about itself.
     fn status(&self) -> Status;
+}
 
+/// What else a planner does where robots meet: in media that carry whole maps instead of
+/// frames, and in an [`exchange`](crate::role::exchange) with a robot in its way.
+pub trait Contact<const TW: usize, const TH: usize>: Planner<TW, TH> {
     /// The tiles of the map that changed since the last call. For media that
     /// carry whole maps; what is taken here is not transmitted first any more.
     fn take_changed(&mut self) -> TileSet<TH>;
@@ -68,19 +153,29 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in what robot `id` told about itself.
     fn hear(&mut self, id: RobotId, status: Status);
 
-    /// Work of the last [`tick`](Self::tick), counted in tile operations and
-    /// rows of the decision window.
-    fn work(&self) -> u32;
-
-    /// Steps to the goal that the last [`tick`](Self::tick) assigned. `None`: it
-    /// assigned none, or this planner does not tell.
-    fn assignment(&self) -> Option<u32> {
-        None
-    }
-
     /// What the robot is about to do, for an [`exchange`](crate::role::exchange)
     /// with a robot in its way. `None`: this planner does not exchange roles.
     fn role(&self) -> Option<Role> {
+        None
+    }
+
+    /// Takes over another robot's role.
+    fn adopt(&mut self, role: Role) {
+        let _ = role;
+    }
+}
+
+/// What displays and measurements ask a planner for. None of it is needed.
+pub trait Inspect<const TW: usize, const TH: usize>: Planner<TW, TH> {
+    /// Work of the last [`tick`](Planner::tick), counted in tile operations and rows of
+    /// the decision window; 0 where a planner does not count.
+    fn work(&self) -> u32 {
+        0
+    }
+
+    /// Steps to the goal that the last [`tick`](Planner::tick) assigned. `None`: it
+    /// assigned none, or this planner does not tell.
+    fn assignment(&self) -> Option<u32> {
         None
     }
 
@@ -90,9 +185,12 @@ pub trait Planner<const TW: usize, const TH: usize> {
         let _ = at;
         0
     }
+}
 
-    /// Takes over another robot's role.
-    fn adopt(&mut self, role: Role) {
-        let _ = role;
-    }
+/// All three, for whoever hosts planners of several kinds.
+pub trait AnyPlanner<const TW: usize, const TH: usize>: Contact<TW, TH> + Inspect<TW, TH> {}
+
+impl<P, const TW: usize, const TH: usize> AnyPlanner<TW, TH> for P where
+    P: Contact<TW, TH> + Inspect<TW, TH>
+{
 }

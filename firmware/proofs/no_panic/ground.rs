@@ -9,7 +9,7 @@ use planner_core::radio::MAX_LEN;
 use planner_core::role::exchange;
 use planner_core::sight::{Beam, Pose, RangeScan, look};
 use planner_core::tile::TileIndex;
-use planner_core::{Activity, Motion, Planner, Sighting, Status};
+use planner_core::{Activity, AnyPlanner, Contact, Motion, Planner, Sighting, Status};
 use static_cell::ConstStaticCell;
 
 use super::any;
@@ -45,8 +45,8 @@ pub(super) fn call_all() {
     }
 }
 
-/// The verbs of [`Planner`].
-fn drive<const TW: usize, const TH: usize>(robot: &mut impl Planner<TW, TH>) {
+/// What every planner does: [`AnyPlanner`].
+fn drive<const TW: usize, const TH: usize>(robot: &mut impl AnyPlanner<TW, TH>) {
     for sighting in [scan(), Some(seen())].into_iter().flatten() {
         black_box(robot.observe(&sighting));
     }

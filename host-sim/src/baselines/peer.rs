@@ -3,8 +3,8 @@
 use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::{
-    Action, Activity, Cell, Extent, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, Stop,
-    TileSet,
+    Action, Activity, Cell, Contact, Extent, Inspect, Learnt, Map, Motion, Planner, RobotId,
+    Sighting, Status, Stop, TileSet,
 };
 
 use super::waves::{Spot, Waves};
@@ -260,7 +260,9 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     fn hearsay(&self) -> Hearsay {
         self.link.hearsay()
     }
+}
 
+impl<R: Rule, const TW: usize, const TH: usize> Contact<TW, TH> for Peer<R, TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.map)
     }
@@ -278,7 +280,9 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
         }
         self.others[index] = Some(status);
     }
+}
 
+impl<R: Rule, const TW: usize, const TH: usize> Inspect<TW, TH> for Peer<R, TW, TH> {
     fn work(&self) -> u32 {
         self.work
     }

@@ -3,7 +3,7 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::surface::Surface;
-use planner_core::survey::{Knowledge, Limits, PATIENCE, SetupError, Surveyor};
+use planner_core::survey::{Knowledge, Limits, PATIENCE, Pilot, SetupError};
 use planner_core::tile::bits;
 use planner_core::{Action, Cell, Extent, Point, RobotId, Stop};
 
@@ -54,7 +54,7 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
     }
 }
 
-impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
+impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
     fn knowledge(&self) -> &Knowledge<TW, TH> {
         &self.knowledge
     }
@@ -63,16 +63,6 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for Follower<TW, TH> {
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action<Point> {
-        let action = match self.knowledge.begin_tick() {
-            Some(action) => action,
-            None => self.decide(),
-        };
-        self.knowledge.end_tick(action)
-    }
-}
-
-impl<const TW: usize, const TH: usize> Follower<TW, TH> {
     fn decide(&mut self) -> Action<Point> {
         if let Some((_, to)) = self.knowledge.take_refused() {
             self.refused = Some(to.cell());

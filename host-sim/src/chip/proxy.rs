@@ -8,7 +8,8 @@ use planner_core::radio::{Frame, FrameError, GridId, Heard, Hearsay, MAX_LEN, Ti
 use planner_core::role::Role;
 use planner_core::tile::TileIndex;
 use planner_core::{
-    Action, Activity, Learnt, Map, Motion, Planner, RobotId, Sighting, Status, TileSet, Wait,
+    Action, Activity, Contact, Inspect, Learnt, Map, Motion, Planner, RobotId, Sighting, Status,
+    TileSet, Wait,
 };
 
 use super::emulator::Chip;
@@ -247,7 +248,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
     fn hearsay(&self) -> Hearsay {
         self.state.hearsay
     }
+}
 
+impl<const TW: usize, const TH: usize> Contact<TW, TH> for Proxy<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         let request = Request::TakeChanged;
         let rows = self.ask(Some(Call::TakeChanged), &request, |reply| match reply {
@@ -284,15 +287,17 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
         self.tell(Some(Call::Hear), &Request::Hear(id, status));
     }
 
-    fn work(&self) -> u32 {
-        self.state.work
-    }
-
     fn role(&self) -> Option<Role> {
         self.state.role
     }
 
     fn adopt(&mut self, role: Role) {
         self.tell(Some(Call::Adopt), &Request::Adopt(role));
+    }
+}
+
+impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Proxy<TW, TH> {
+    fn work(&self) -> u32 {
+        self.state.work
     }
 }

@@ -8,7 +8,7 @@ use bridge::{
 };
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
-use planner_core::survey::{Knowledge, Surveyor};
+use planner_core::survey::{Knowledge, Pilot, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status, Wait};
 
 use super::emulator::Chip;
@@ -37,7 +37,7 @@ pub(super) struct SurveyProxy<const T: usize> {
 /// What one robot knows, and no decisions.
 struct Mirror<const T: usize>(Knowledge<T, T>);
 
-impl<const T: usize> Surveyor<T, T> for Mirror<T> {
+impl<const T: usize> Pilot<T, T> for Mirror<T> {
     fn knowledge(&self) -> &Knowledge<T, T> {
         &self.0
     }
@@ -46,8 +46,7 @@ impl<const T: usize> Surveyor<T, T> for Mirror<T> {
         &mut self.0
     }
 
-    fn tick(&mut self) -> Action<Point> {
-        self.0.begin_tick();
+    fn decide(&mut self) -> Action<Point> {
         Action::Wait
     }
 }
@@ -157,10 +156,6 @@ impl<const T: usize> Drop for SurveyProxy<T> {
 impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
     fn knowledge(&self) -> &Knowledge<T, T> {
         &self.mirror.0
-    }
-
-    fn knowledge_mut(&mut self) -> &mut Knowledge<T, T> {
-        &mut self.mirror.0
     }
 
     fn observe(&mut self, at: Point, columns: &[Column]) {

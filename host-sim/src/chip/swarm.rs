@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use bridge::{Cost, SurveyorConfig};
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
-use planner_core::{Extent, Planner, RobotId};
+use planner_core::{AnyPlanner, Extent, RobotId};
 
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
@@ -93,7 +93,7 @@ impl Host for Swarm {
         &self,
         kind: PlannerKind,
         setup: Setup,
-    ) -> Box<dyn Planner<TW, TH>> {
+    ) -> Box<dyn AnyPlanner<TW, TH>> {
         let chip = Chip::start(setup.id, self.machine, &self.image, self.limit);
         Box::new(Proxy::new(chip, self.book.clone(), kind, setup))
     }

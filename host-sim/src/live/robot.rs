@@ -5,7 +5,7 @@ use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::time::{Duration, Instant};
 
 use planner_core::radio::{LinkConfig, MAX_LEN};
-use planner_core::{Action, Cell, Extent, Motion, Planner, RobotId};
+use planner_core::{Action, AnyPlanner, Cell, Extent, Motion, RobotId};
 use serde::{Deserialize, Serialize};
 
 use super::error::LiveError;
@@ -154,7 +154,7 @@ struct Place {
 }
 
 struct Body<const TW: usize, const TH: usize> {
-    planner: Box<dyn Planner<TW, TH>>,
+    planner: Box<dyn AnyPlanner<TW, TH>>,
     socket: UdpSocket,
     peers: Vec<SocketAddr>,
     report: RobotReport,

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use planner_core::{Extent, Planner};
+use planner_core::{AnyPlanner, Extent};
 
 use super::{Outcome, Progress, Running, Stepping};
 use crate::baselines::{Bmilrv, Marks};
@@ -35,7 +35,7 @@ pub trait Host: Clone + 'static {
         &self,
         kind: PlannerKind,
         setup: Setup,
-    ) -> Box<dyn Planner<TW, TH>>;
+    ) -> Box<dyn AnyPlanner<TW, TH>>;
 
     /// Whether the run has to end because a planner is lost.
     fn has_failed(&self) -> bool;
@@ -50,7 +50,7 @@ impl Host for Here {
         &self,
         kind: PlannerKind,
         setup: Setup,
-    ) -> Box<dyn Planner<TW, TH>> {
+    ) -> Box<dyn AnyPlanner<TW, TH>> {
         kind.build(setup)
             .expect("the compiled size holds the world")
     }
@@ -139,7 +139,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
         (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
         _ => None,
     };
-    let build = Box::new(move |id, start| -> Box<dyn Planner<TW, TH>> {
+    let build = Box::new(move |id, start| -> Box<dyn AnyPlanner<TW, TH>> {
         if let Some(marks) = &marks {
             let robot = Bmilrv::new(marks.clone(), id, extent, start, link);
             return Box::new(robot.expect("the compiled size holds the world"));

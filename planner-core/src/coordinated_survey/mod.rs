@@ -27,7 +27,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Rescue, SetupError};
 use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
@@ -180,7 +180,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     }
 }
 
-impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW, TH> {
+impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, TH> {
     fn knowledge(&self) -> &Knowledge<TW, TH> {
         &self.knowledge
     }
@@ -189,16 +189,6 @@ impl<const TW: usize, const TH: usize> Surveyor<TW, TH> for CoordinatedSurvey<TW
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action<Point> {
-        let action = match self.knowledge.begin_tick() {
-            Some(action) => action,
-            None => self.decide(),
-        };
-        self.knowledge.end_tick(action)
-    }
-}
-
-impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     fn decide(&mut self) -> Action<Point> {
         let gain = self.knowledge.gain();
         self.history

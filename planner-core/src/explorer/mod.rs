@@ -110,7 +110,7 @@ use window::{Aim, Candidate, NearSearch};
 use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{Learnt, Map};
-use crate::planner::Planner;
+use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::role::{self, Plan, Role};
@@ -729,7 +729,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn hearsay(&self) -> Hearsay {
         self.link.hearsay()
     }
+}
 
+impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.around.map)
     }
@@ -747,16 +749,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
     }
 
-    fn work(&self) -> u32 {
-        self.work
-    }
-
     fn role(&self) -> Option<Role> {
         Some(self.role)
-    }
-
-    fn searched(&self, at: TileIndex) -> u64 {
-        self.far.searched(at)
     }
 
     fn adopt(&mut self, role: Role) {
@@ -764,6 +758,16 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.stepping = false;
         self.holds = 0;
         self.far.cancel();
+    }
+}
+
+impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Explorer<TW, TH> {
+    fn work(&self) -> u32 {
+        self.work
+    }
+
+    fn searched(&self, at: TileIndex) -> u64 {
+        self.far.searched(at)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Rescue, SetupError, Surveyor};
+use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Rescue, SetupError};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -211,7 +211,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     }
 }
 
-impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao<TW, TH, H> {
+impl<const TW: usize, const TH: usize, const H: usize> Pilot<TW, TH> for Fcao<TW, TH, H> {
     fn knowledge(&self) -> &Knowledge<TW, TH> {
         &self.knowledge
     }
@@ -220,16 +220,6 @@ impl<const TW: usize, const TH: usize, const H: usize> Surveyor<TW, TH> for Fcao
         &mut self.knowledge
     }
 
-    fn tick(&mut self) -> Action<Point> {
-        let action = match self.knowledge.begin_tick() {
-            Some(action) => action,
-            None => self.decide(),
-        };
-        self.knowledge.end_tick(action)
-    }
-}
-
-impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     // [Renzaglia2019 Algorithm 1]
     fn decide(&mut self) -> Action<Point> {
         self.history

@@ -41,7 +41,7 @@ mod view;
 use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{Learnt, Map};
-use crate::planner::Planner;
+use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
@@ -336,7 +336,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
     fn hearsay(&self) -> Hearsay {
         self.link.hearsay()
     }
+}
 
+impl<const TW: usize, const TH: usize> Contact<TW, TH> for LocalFrontiers<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.map)
     }
@@ -353,7 +355,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
             self.others.hear(id, status.activity);
         }
     }
+}
 
+impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LocalFrontiers<TW, TH> {
     /// Rows of the window.
     fn work(&self) -> u32 {
         self.work

@@ -60,8 +60,17 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     /// What the robot knows.
     fn knowledge(&self) -> &Knowledge<TW, TH>;
 
-    /// The same, to be told more.
-    fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH>;
+    /// Begins a step: where the robot is, and the columns that it sees from there.
+    ///
+    /// From a pose that is not finite, off the map or below the known ground nothing is
+    /// learnt and nothing decided: the robot waits, and [`waiting`](Self::waiting) is
+    /// [`Wait::Pose`], until a pose is good again.
+    ///
+    /// What a survey rests on: a look from above a column, no farther from it than the
+    /// sensor's range, shows that column. A sensor that shows nothing from there a
+    /// hundred times in a row is taken to have failed: [`Stop::Unseen`](crate::Stop::Unseen),
+    /// until it shows something.
+    fn observe(&mut self, at: Point, columns: &[Column]);
 
     /// Decides. Call it once per step.
     ///
@@ -70,70 +79,113 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     /// returns the same, until the robot hears of more, or [`resume`](Self::resume).
     fn tick(&mut self) -> Action<Point>;
 
-    /// What the robot tells the others about itself.
-    fn status(&self) -> Status<Point, Cell> {
-        self.knowledge().status()
-    }
-
-    /// Cells, tiles, candidates and samples looked at by the last
-    /// [`tick`](Self::tick): what its time is proportional to.
-    fn work(&self) -> u32 {
-        self.knowledge().work()
-    }
-
     /// Why the last [`tick`](Self::tick) was [`Action::Wait`], where the planner tells.
-    fn waiting(&self) -> Option<Wait> {
-        self.knowledge().waiting()
-    }
+    fn waiting(&self) -> Option<Wait>;
 
     /// Goes on after a stop with the map at hand: what was given up is tried again.
     /// Without a stop it does only the latter.
-    fn resume(&mut self) {
-        self.knowledge_mut().resume();
-    }
-
-    /// Begins a step: where the robot is, and the columns that it sees from there.
-    ///
-    /// From a pose that is not finite, off the map or below the known ground nothing is
-    /// learnt and nothing decided: the robot hovers, and [`waiting`](Self::waiting) is
-    /// [`Wait::Pose`], until a pose is good again.
-    ///
-    /// What a survey rests on: a look from above a column, no farther from it than the
-    /// sensor's range, shows that column. A sensor that shows nothing from there a
-    /// hundred times in a row is taken to have failed: [`Stop::Unseen`](crate::Stop::Unseen), until it shows
-    /// something.
-    fn observe(&mut self, at: Point, columns: &[Column]) {
-        self.knowledge_mut().observe(at, columns);
-    }
-
-    /// Takes in what robot `id` told about itself.
-    fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
-        self.knowledge_mut().hear(id, status);
-    }
-
-    /// Takes in a piece of another robot's map.
-    fn merge(&mut self, patch: &Patch) {
-        self.knowledge_mut().merge(patch);
-    }
+    fn resume(&mut self);
 
     /// Says how the last [`Action::Move`] went, and where the robot is now.
-    fn report(&mut self, motion: Motion, at: Point) {
-        self.knowledge_mut().report(motion, at);
-    }
+    fn report(&mut self, motion: Motion, at: Point);
 
     /// Writes the next frame for the radio and returns its length, or `None` while the
     /// budget allows none. Call it as often as it gives one, after
     /// [`observe`](Self::observe) and after [`report`](Self::report).
-    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
-        self.knowledge_mut().transmit(buffer)
-    }
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
 
     /// Takes in another robot's frame; gives the number of columns that it brought.
     ///
     /// # Errors
     /// See [`FrameError`]; nothing has changed then.
+    fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError>;
+
+    /// What the robot tells the others about itself.
+    fn status(&self) -> Status<Point, Cell>;
+
+    /// Takes in what robot `id` told about itself.
+    fn hear(&mut self, id: RobotId, status: Status<Point, Cell>);
+
+    /// Takes in a piece of another robot's map.
+    fn merge(&mut self, patch: &Patch);
+
+    /// Cells, tiles, candidates and samples looked at by the last
+    /// [`tick`](Self::tick): what its time is proportional to.
+    fn work(&self) -> u32;
+}
+
+/// How a robot decides. Whoever says that is a [`Surveyor`]: the rest is done by what the
+/// robot knows.
+pub trait Pilot<const TW: usize, const TH: usize> {
+    /// What the robot knows.
+    fn knowledge(&self) -> &Knowledge<TW, TH>;
+
+    /// The same, to be told more.
+    fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH>;
+
+    /// What to do in a step in which there is something to decide.
+    fn decide(&mut self) -> Action<Point>;
+
+    /// What to do in any step.
+    fn act(&mut self) -> Action<Point> {
+        let action = match self.knowledge_mut().begin_tick() {
+            Some(action) => action,
+            None => self.decide(),
+        };
+        self.knowledge_mut().end_tick(action)
+    }
+}
+
+impl<P, const TW: usize, const TH: usize> Surveyor<TW, TH> for P
+where
+    P: Pilot<TW, TH>,
+{
+    fn knowledge(&self) -> &Knowledge<TW, TH> {
+        Pilot::knowledge(self)
+    }
+
+    fn observe(&mut self, at: Point, columns: &[Column]) {
+        self.knowledge_mut().observe(at, columns);
+    }
+
+    fn tick(&mut self) -> Action<Point> {
+        self.act()
+    }
+
+    fn waiting(&self) -> Option<Wait> {
+        Pilot::knowledge(self).waiting()
+    }
+
+    fn resume(&mut self) {
+        self.knowledge_mut().resume();
+    }
+
+    fn report(&mut self, motion: Motion, at: Point) {
+        self.knowledge_mut().report(motion, at);
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        self.knowledge_mut().transmit(buffer)
+    }
+
     fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
         self.knowledge_mut().receive(bytes)
+    }
+
+    fn status(&self) -> Status<Point, Cell> {
+        Pilot::knowledge(self).status()
+    }
+
+    fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
+        self.knowledge_mut().hear(id, status);
+    }
+
+    fn merge(&mut self, patch: &Patch) {
+        self.knowledge_mut().merge(patch);
+    }
+
+    fn work(&self) -> u32 {
+        Pilot::knowledge(self).work()
     }
 }
 

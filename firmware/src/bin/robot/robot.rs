@@ -11,7 +11,7 @@ use planner_core::local_frontiers::LocalFrontiers;
 use planner_core::map::Map;
 use planner_core::radio::{MAX_LEN, TileRecord};
 use planner_core::tile::{TileIndex, TileSet};
-use planner_core::{Cell, Extent, Planner, RobotId};
+use planner_core::{AnyPlanner, Cell, Extent, RobotId};
 use static_cell::ConstStaticCell;
 
 use crate::host::{Host, Trouble};
@@ -31,7 +31,7 @@ static STAGE: ConstStaticCell<Stage> = ConstStaticCell::new(Stage {
 static INBOX: ConstStaticCell<Inbox> = ConstStaticCell::new(Inbox::new());
 static OUTBOX: ConstStaticCell<[u8; MAX_MESSAGE]> = ConstStaticCell::new([0; MAX_MESSAGE]);
 
-/// What [`Planner::join`] takes. All that ever was put aside for this robot stays
+/// What [`Contact::join`](planner_core::Contact::join) takes. All that ever was put aside for this robot stays
 /// on the map: it was joined before, so joining it again changes nothing.
 struct Stage {
     map: Map<COLUMNS, ROWS>,
@@ -95,7 +95,7 @@ pub(crate) fn serve() -> Result<(), Trouble> {
     }
 }
 
-type Robot = dyn Planner<COLUMNS, ROWS>;
+type Robot = dyn AnyPlanner<COLUMNS, ROWS>;
 
 /// Sets up the planner, in place. Returns its size too.
 fn prepare(

@@ -9,7 +9,9 @@ use planner_core::map::{Map, Tile};
 use planner_core::radio::MAX_LEN;
 use planner_core::sight::look;
 use planner_core::tile::TileIndex;
-use planner_core::{Action, Activity, Cell, Extent, Motion, Planner, RobotId, Status};
+use planner_core::{
+    Action, Activity, Cell, Contact, Extent, Inspect, Motion, Planner, RobotId, Status,
+};
 use static_cell::ConstStaticCell;
 
 use crate::Most;

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use crate::local_frontiers::{Config, LocalFrontiers};
 use crate::sight::look;
-use crate::{Action, Cell, Direction, Extent, Motion, Planner, RobotId, Stop};
+use crate::{Action, Cell, Contact, Direction, Extent, Inspect, Motion, Planner, RobotId, Stop};
 
 pub(super) type Robot = LocalFrontiers<3, 3>;
 
@@ -126,7 +126,7 @@ impl<'a> Fleet<'a> {
     }
 
     fn share(&mut self) {
-        let changed: Vec<_> = self.robots.iter_mut().map(Planner::take_changed).collect();
+        let changed: Vec<_> = self.robots.iter_mut().map(Contact::take_changed).collect();
         let told = self.robots.clone();
         for robot in &mut self.robots {
             for (sender, tiles) in told.iter().zip(&changed) {

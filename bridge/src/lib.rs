@@ -17,8 +17,8 @@ mod survey;
 mod wire;
 
 pub use message::{
-    Answer, Cost, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State, Welcome,
-    fingerprint,
+    Answer, Cost, FrameBytes, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State,
+    Welcome, fingerprint,
 };
 pub use survey::{
     LOOK, PatchRecord, SEEN, Seen, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use planner_core::ExtentError;
-use planner_core::radio::{FrameError, Heard, Hearsay, LinkConfig, TileRecord};
+use planner_core::radio::{FrameError, Heard, Hearsay, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::role::Role;
 use planner_core::survey::SetupError;
 use planner_core::tile::TileIndex;
@@ -19,6 +19,9 @@ pub const STAGED: usize = 12;
 
 /// A set of tiles: a bit a column, row by row, as far as there are any.
 pub type Rows = Vec<u64, 64>;
+
+/// A frame for the radio.
+pub type FrameBytes = Vec<u8, MAX_LEN>;
 
 /// Which planner decides, and how.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -96,14 +99,13 @@ pub enum Request<'a> {
 
 /// What the image answers to any other request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Answer<'a> {
+pub struct Answer<S = State, R = Reply> {
     /// What the planner's call took.
     pub cost: Cost,
     /// What has become of the planner.
-    pub state: State,
+    pub state: S,
     /// What the call returned.
-    #[serde(borrow)]
-    pub reply: Reply<'a>,
+    pub reply: R,
 }
 
 /// What a call takes of the chip.
@@ -140,7 +142,7 @@ pub struct State {
     clippy::large_enum_variant,
     reason = "there is one at a time, and no heap on the chip"
 )]
-pub enum Reply<'a> {
+pub enum Reply {
     /// Nothing to say.
     Done,
     /// What was learnt.
@@ -148,8 +150,7 @@ pub enum Reply<'a> {
     /// What was decided.
     Action(Action),
     /// The next frame for the radio, if there is one.
-    #[serde(borrow)]
-    Frame(Option<&'a [u8]>),
+    Frame(Option<FrameBytes>),
     /// What a received frame brought.
     Heard(Result<Heard, FrameError>),
     /// Tiles that changed.

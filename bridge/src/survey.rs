@@ -11,7 +11,7 @@ use planner_core::tile::{TileIndex, bits};
 use planner_core::{Action, Cell, Motion, Point, RobotId, Status, Wait, coordinated_survey, fcao};
 use serde::{Deserialize, Serialize};
 
-use crate::{Cost, Memory};
+use crate::{Answer, Memory};
 
 /// Columns of one [`SurveyRequest::Look`] at most.
 pub const LOOK: usize = 64;
@@ -74,16 +74,9 @@ pub enum SurveyRequest<'a> {
     End,
 }
 
-/// What the image answers to any other request.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SurveyAnswer {
-    /// What the planner's call took.
-    pub cost: Cost,
-    /// What the robot would tell the others about itself.
-    pub status: Status<Point, Cell>,
-    /// What the call returned.
-    pub reply: SurveyReply,
-}
+/// What the image answers to any other request, with what the robot would tell the others
+/// about itself.
+pub type SurveyAnswer = Answer<Status<Point, Cell>, SurveyReply>;
 
 /// What a call returned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

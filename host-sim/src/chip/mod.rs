@@ -9,6 +9,7 @@
 //! own map must be that of the copy. A `SurveyProxy` is the same for a robot that
 //! flies.
 
+mod dialogue;
 mod emulator;
 mod error;
 mod proxy;

@@ -4,7 +4,9 @@ use std::rc::Rc;
 
 use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
 use planner_core::map::Tile;
-use planner_core::radio::{Frame, FrameError, GridId, Heard, Hearsay, MAX_LEN, TileRecord};
+use planner_core::radio::{
+    Frame, FrameError, GridId, Heard, Hearsay, LinkConfig, MAX_LEN, TileRecord,
+};
 use planner_core::role::Role;
 use planner_core::tile::TileIndex;
 use planner_core::{
@@ -12,26 +14,31 @@ use planner_core::{
     TileSet, Wait,
 };
 
+use super::dialogue::Dialogue;
 use super::emulator::Chip;
 use super::error::ChipError;
 use super::swarm::Book;
 use crate::measured::Call;
 use crate::planners::{PlannerKind, Setup};
 
-/// Passes each verb on to the chip, and the chip's answer back.
-///
-/// A chip that fails leaves the reason in the book; from then on the proxy says
-/// nothing and stands still, until the run ends for that reason.
+/// Passes each verb on to the chip, and the chip's answer back. Without answers it says
+/// nothing and stands still.
 pub(super) struct Proxy<const TW: usize, const TH: usize> {
-    id: RobotId,
-    /// `None` when it has failed.
-    chip: Option<Chip>,
-    book: Rc<Book>,
-    clock_hz: u64,
+    dialogue: Dialogue,
     grid: GridId,
     /// What the chip's map holds too.
     map: Map<TW, TH>,
     state: State,
+}
+
+/// Takes what a reply of one kind holds.
+macro_rules! held_by {
+    ($kind:ident) => {
+        |reply| match reply {
+            Reply::$kind(value) => Some(value),
+            _ => None,
+        }
+    };
 }
 
 impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
@@ -47,12 +54,18 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         let mut map = Map::vacant();
         map.reset(extent)
             .expect("the compiled size holds the world");
-        let mut proxy = Self {
+        let planner = kind.on_chip(setup);
+        let link = planner.map_or(LinkConfig::new(), |planner| *planner.link());
+        let request = planner.map(|planner| Request::Start {
+            planner,
             id,
-            chip: None,
-            book,
-            clock_hz: 1,
-            grid: GridId(0),
+            extent,
+            start,
+        });
+        let request = request.ok_or(ChipError::HostOnly(kind));
+        Self {
+            dialogue: Dialogue::open(id, chip, book, request),
+            grid: GridId::of(extent, link.origin_mm, link.cell_mm),
             map,
             state: State {
                 status: Status {
@@ -70,37 +83,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
                 waiting: None,
                 hearsay: Hearsay::default(),
             },
-        };
-        match chip.and_then(|chip| proxy.start(chip, kind, setup)) {
-            Ok(chip) => proxy.chip = Some(chip),
-            Err(failure) => proxy.fail(failure),
         }
-        proxy
-    }
-
-    fn start(
-        &mut self,
-        mut chip: Chip,
-        kind: PlannerKind,
-        setup: Setup,
-    ) -> Result<Chip, ChipError> {
-        let Setup { extent, start, .. } = setup;
-        let planner = kind.on_chip(setup).ok_or(ChipError::HostOnly(kind))?;
-        let link = planner.link();
-        self.grid = GridId::of(extent, link.origin_mm, link.cell_mm);
-        self.clock_hz = chip.set_up(&Request::Start {
-            planner,
-            id: self.id,
-            extent,
-            start,
-        })?;
-        Ok(chip)
-    }
-
-    fn fail(&mut self, failure: ChipError) {
-        self.chip = None;
-        // The first failure is the cause of the others.
-        let _ = self.book.failure.set(failure);
     }
 
     /// Sends a request; `read` takes what is wanted out of the reply. `None` after
@@ -109,19 +92,9 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         &mut self,
         call: Option<Call>,
         request: &Request<'_>,
-        read: impl FnOnce(Reply<'_>) -> Option<T>,
+        read: impl FnOnce(Reply) -> Option<T>,
     ) -> Option<T> {
-        let chip = self.chip.as_mut()?;
-        let answer = match chip.ask::<Answer<'_>>(request) {
-            Ok(answer) => answer,
-            Err(failure) => {
-                self.fail(failure);
-                return None;
-            }
-        };
-        if let Some(call) = call {
-            self.book.count(call, answer.cost, self.clock_hz);
-        }
+        let answer: Answer<State, Reply> = self.dialogue.ask(call, request)?;
         self.state = answer.state;
         // Where the robot stands shows in no message but this one.
         let TileRecord { at, tile } = self.state.here;
@@ -132,10 +105,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         }
         let value = read(answer.reply);
         if value.is_none() {
-            self.fail(ChipError::Dialogue {
-                robot: self.id,
-                problem: format!("an answer to something else than {request:?}"),
-            });
+            self.dialogue.misunderstood(request);
         }
         value
     }
@@ -145,32 +115,12 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
             matches!(reply, Reply::Done).then_some(())
         });
     }
-
-    /// Lets the chip say what it takes, and end.
-    fn finish(&mut self) {
-        let read = |reply: Reply<'_>| match reply {
-            Reply::Memory(memory) => Some(memory),
-            _ => None,
-        };
-        if let Some(memory) = self.ask(None, &Request::Memory, read) {
-            self.book.measured.borrow_mut().weigh(&memory);
-        }
-        if let Some(Err(failure)) = self.chip.take().map(|chip| chip.end(&Request::End)) {
-            self.fail(failure);
-        }
-    }
 }
 
 impl<const TW: usize, const TH: usize> Drop for Proxy<TW, TH> {
     fn drop(&mut self) {
-        self.finish();
-    }
-}
-
-fn learnt(reply: Reply<'_>) -> Option<Learnt> {
-    match reply {
-        Reply::Learnt(learnt) => Some(learnt),
-        _ => None,
+        let memory = self.ask(None, &Request::Memory, held_by!(Memory));
+        self.dialogue.close(memory, &Request::End);
     }
 }
 
@@ -178,17 +128,14 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
         self.map.observe(sighting);
         let request = Request::Observe(sighting.clone());
-        self.ask(Some(Call::Observe), &request, learnt)
+        self.ask(Some(Call::Observe), &request, held_by!(Learnt))
             .unwrap_or_default()
     }
 
     fn tick(&mut self) -> Action {
-        let action = self.ask(Some(Call::Tick), &Request::Tick, |reply| match reply {
-            Reply::Action(action) => Some(action),
-            _ => None,
-        });
-        if self.chip.is_some() && self.state.map != fingerprint(&self.map) {
-            self.fail(ChipError::OtherMap { robot: self.id });
+        let action = self.ask(Some(Call::Tick), &Request::Tick, held_by!(Action));
+        if self.dialogue.is_open() && self.state.map != fingerprint(&self.map) {
+            self.dialogue.other_map();
         }
         action.unwrap_or(Action::Wait)
     }
@@ -206,30 +153,15 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
     }
 
     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
-        self.ask(
-            Some(Call::Transmit),
-            &Request::Transmit,
-            |reply| match reply {
-                Reply::Frame(None) => Some(None),
-                Reply::Frame(Some(frame)) => {
-                    buffer.get_mut(..frame.len())?.copy_from_slice(frame);
-                    Some(Some(frame.len()))
-                }
-                _ => None,
-            },
-        )
-        .flatten()
+        let call = Some(Call::Transmit);
+        let frame = self.ask(call, &Request::Transmit, held_by!(Frame))??;
+        buffer.get_mut(..frame.len())?.copy_from_slice(&frame);
+        Some(frame.len())
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let heard = self.ask(
-            Some(Call::Receive),
-            &Request::Receive(bytes),
-            |reply| match reply {
-                Reply::Heard(heard) => Some(heard),
-                _ => None,
-            },
-        );
+        let call = Some(Call::Receive);
+        let heard = self.ask(call, &Request::Receive(bytes), held_by!(Heard));
         let heard = heard.unwrap_or(Err(FrameError::Length(0)))?;
         for record in Frame::decode(bytes, None, self.grid, self.map.extent())?.tiles {
             self.map.join_tile(record.at, record.tile);
@@ -252,11 +184,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
 
 impl<const TW: usize, const TH: usize> Contact<TW, TH> for Proxy<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
-        let request = Request::TakeChanged;
-        let rows = self.ask(Some(Call::TakeChanged), &request, |reply| match reply {
-            Reply::Changed(rows) => Some(rows),
-            _ => None,
-        });
+        let call = Some(Call::TakeChanged);
+        let rows = self.ask(call, &Request::TakeChanged, held_by!(Changed));
         let mut changed = TileSet::new();
         for (&row, y) in rows.iter().flatten().zip(0u8..) {
             for x in planner_core::tile::bits(row) {
@@ -279,7 +208,7 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Proxy<TW, TH> {
             self.tell(None, &Request::Stage(records));
         }
         self.map.join_tiles(other, tiles);
-        self.ask(Some(Call::Join), &Request::Join, learnt)
+        self.ask(Some(Call::Join), &Request::Join, held_by!(Learnt))
             .unwrap_or_default()
     }
 

@@ -1,5 +1,6 @@
 //! The planner of a flying robot on a chip, as the survey sees it.
 
+use std::mem::discriminant;
 use std::rc::Rc;
 
 use bridge::{
@@ -9,23 +10,18 @@ use bridge::{
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
 use planner_core::survey::{Knowledge, Pilot, Surveyor};
-use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status, Wait};
+use planner_core::{Action, Cell, Motion, Point, RobotId, Status, Wait};
 
+use super::dialogue::Dialogue;
 use super::emulator::Chip;
 use super::error::ChipError;
 use super::swarm::Book;
 use crate::measured::Call;
 
-/// Passes each verb on to the chip, and the chip's answer back.
-///
-/// A chip that fails leaves the reason in the book, as for a
-/// [`Proxy`](super::proxy::Proxy).
+/// Passes each verb on to the chip, and the chip's answer back, as a
+/// [`Proxy`](super::proxy::Proxy) does.
 pub(super) struct SurveyProxy<const T: usize> {
-    id: RobotId,
-    /// `None` when it has failed.
-    chip: Option<Chip>,
-    book: Rc<Book>,
-    clock_hz: u64,
+    dialogue: Dialogue,
     /// What the chip knows too.
     mirror: Mirror<T>,
     /// What the chip said last of itself.
@@ -59,97 +55,48 @@ impl<const T: usize> SurveyProxy<T> {
         planner: SurveyorConfig,
         id: RobotId,
     ) -> Self {
-        let extent = knowledge.surface().extent();
-        let mirror = Mirror(knowledge);
-        let mut proxy = Self {
+        let request = Request::Survey {
+            planner,
             id,
-            chip: None,
-            book,
-            clock_hz: 1,
+            extent: knowledge.surface().extent(),
+        };
+        let mirror = Mirror(knowledge);
+        Self {
+            dialogue: Dialogue::open(id, chip, book, Ok(request)),
             status: mirror.status(),
             mirror,
             waiting: None,
             work: 0,
-        };
-        match chip.and_then(|chip| proxy.start(chip, planner, extent)) {
-            Ok(chip) => proxy.chip = Some(chip),
-            Err(failure) => proxy.fail(failure),
         }
-        proxy
-    }
-
-    fn start(
-        &mut self,
-        mut chip: Chip,
-        planner: SurveyorConfig,
-        extent: Extent,
-    ) -> Result<Chip, ChipError> {
-        self.clock_hz = chip.set_up(&Request::Survey {
-            planner,
-            id: self.id,
-            extent,
-        })?;
-        Ok(chip)
-    }
-
-    fn fail(&mut self, failure: ChipError) {
-        self.chip = None;
-        // The first failure is the cause of the others.
-        let _ = self.book.failure.set(failure);
     }
 
     /// Sends a request. `None` after a failure.
     fn ask(&mut self, call: Option<Call>, request: &SurveyRequest<'_>) -> Option<SurveyReply> {
-        let chip = self.chip.as_mut()?;
-        let answer: SurveyAnswer = match chip.ask(request) {
-            Ok(answer) => answer,
-            Err(failure) => {
-                self.fail(failure);
-                return None;
-            }
-        };
-        if let Some(call) = call {
-            self.book.count(call, answer.cost, self.clock_hz);
-        }
-        self.status = answer.status;
+        let answer: SurveyAnswer = self.dialogue.ask(call, request)?;
+        self.status = answer.state;
         Some(answer.reply)
     }
 
-    fn tell(&mut self, call: Option<Call>, request: &SurveyRequest<'_>) {
+    /// Sends a request whose answer the mirror knows.
+    fn tell(&mut self, call: Option<Call>, request: &SurveyRequest<'_>, expected: SurveyReply) {
         match self.ask(call, request) {
-            None | Some(SurveyReply::Done) => {}
-            Some(reply) => self.misunderstood(&reply),
+            None => {}
+            Some(reply) if reply == expected => {}
+            Some(reply) if discriminant(&reply) == discriminant(&expected) => {
+                self.dialogue.other_map();
+            }
+            Some(_) => self.dialogue.misunderstood(request),
         }
-    }
-
-    fn misunderstood(&mut self, reply: &SurveyReply) {
-        self.fail(ChipError::Dialogue {
-            robot: self.id,
-            problem: format!("{reply:?} answers something else"),
-        });
-    }
-
-    fn other_map(&mut self) {
-        let robot = self.id;
-        self.fail(ChipError::OtherMap { robot });
     }
 }
 
 impl<const T: usize> Drop for SurveyProxy<T> {
-    /// Lets the chip say what it takes, and end.
     fn drop(&mut self) {
-        match self.ask(None, &SurveyRequest::Memory) {
-            None => {}
-            Some(SurveyReply::Memory(memory)) => {
-                self.book.measured.borrow_mut().weigh(&memory);
-            }
-            Some(reply) => self.misunderstood(&reply),
-        }
-        if let Some(chip) = self.chip.take()
-            && let Err(failure) = chip.end(&SurveyRequest::End)
-        {
-            self.fail(failure);
-        }
+        let memory = match self.ask(None, &SurveyRequest::Memory) {
+            Some(SurveyReply::Memory(memory)) => Some(memory),
+            _ => None,
+        };
+        self.dialogue.close(memory, &SurveyRequest::End);
     }
 }
 
@@ -162,26 +109,23 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         self.mirror.observe(at, columns);
         for columns in columns.chunks(LOOK) {
             let columns = columns.iter().copied().collect();
-            self.tell(None, &SurveyRequest::Look(columns));
+            self.tell(None, &SurveyRequest::Look(columns), SurveyReply::Done);
         }
-        match self.ask(Some(Call::Observe), &SurveyRequest::Observe(at)) {
-            None => {}
-            Some(SurveyReply::Told(news)) if news == told(&self.mirror.0) => {}
-            Some(SurveyReply::Told(_)) => self.other_map(),
-            Some(reply) => self.misunderstood(&reply),
-        }
+        let told = SurveyReply::Told(told(&self.mirror.0));
+        self.tell(Some(Call::Observe), &SurveyRequest::Observe(at), told);
     }
 
     fn hear(&mut self, id: RobotId, status: Status<Point, Cell>) {
         self.mirror.hear(id, status);
-        self.tell(Some(Call::Hear), &SurveyRequest::Hear(id, status));
+        let request = SurveyRequest::Hear(id, status);
+        self.tell(Some(Call::Hear), &request, SurveyReply::Done);
     }
 
     fn merge(&mut self, patch: &Patch) {
         self.mirror.merge(patch);
         let mut heights = [0; 64];
-        let record = PatchRecord::of(patch, &mut heights);
-        self.tell(Some(Call::Join), &SurveyRequest::Merge(record));
+        let request = SurveyRequest::Merge(PatchRecord::of(patch, &mut heights));
+        self.tell(Some(Call::Join), &request, SurveyReply::Done);
     }
 
     fn tick(&mut self) -> Action<Point> {
@@ -199,7 +143,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
             map,
         } = reply
         else {
-            self.misunderstood(&reply);
+            self.dialogue.misunderstood(&SurveyRequest::Tick);
             return Action::Wait;
         };
         self.work = work;
@@ -212,7 +156,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         let known = &self.mirror.0;
         let here = [known.gain(), known.reward()].map(f32::to_bits);
         if here != [gain, reward].map(f32::to_bits) || map != relief(known.surface()) {
-            self.other_map();
+            self.dialogue.other_map();
         }
         action
     }
@@ -223,34 +167,27 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
 
     fn resume(&mut self) {
         self.mirror.resume();
-        self.tell(None, &SurveyRequest::Resume);
+        self.tell(None, &SurveyRequest::Resume, SurveyReply::Done);
     }
 
     fn report(&mut self, motion: Motion, at: Point) {
         self.mirror.report(motion, at);
-        self.tell(Some(Call::Report), &SurveyRequest::Report(motion, at));
+        let request = SurveyRequest::Report(motion, at);
+        self.tell(Some(Call::Report), &request, SurveyReply::Done);
     }
 
     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
         let length = self.mirror.transmit(buffer);
         let sent = length.and_then(|length| buffer.get(..length)).map(imprint);
-        match self.ask(Some(Call::Transmit), &SurveyRequest::Transmit) {
-            None => {}
-            Some(SurveyReply::Sent(theirs)) if theirs == sent => {}
-            Some(SurveyReply::Sent(_)) => self.other_map(),
-            Some(reply) => self.misunderstood(&reply),
-        }
+        let sent = SurveyReply::Sent(sent);
+        self.tell(Some(Call::Transmit), &SurveyRequest::Transmit, sent);
         length
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
         let heard = self.mirror.receive(bytes);
-        match self.ask(Some(Call::Receive), &SurveyRequest::Receive(bytes)) {
-            None => {}
-            Some(SurveyReply::Heard(theirs)) if theirs == heard => {}
-            Some(SurveyReply::Heard(_)) => self.other_map(),
-            Some(reply) => self.misunderstood(&reply),
-        }
+        let request = SurveyRequest::Receive(bytes);
+        self.tell(Some(Call::Receive), &request, SurveyReply::Heard(heard));
         heard
     }
 

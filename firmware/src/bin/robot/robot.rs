@@ -1,8 +1,8 @@
 //! The planner, and what the simulator asks of it.
 
 use bridge::{
-    Answer, Cost, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request, Rows, State,
-    VERSION, Welcome, fingerprint,
+    Answer, Cost, FrameBytes, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request,
+    Rows, State, VERSION, Welcome, fingerprint,
 };
 use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
 use planner_core::ExtentError;
@@ -81,9 +81,7 @@ pub(crate) fn serve() -> Result<(), Trouble> {
     host.answer(&Welcome::Ready(hello), outbox)?;
     loop {
         let request = host.ask(inbox)?;
-        let mut frame = [0; MAX_LEN];
-        let Some((reply, cost)) = obey(planner, size, stage, &stopwatch, request, &mut frame)
-        else {
+        let Some((reply, cost)) = obey(planner, size, stage, &stopwatch, request) else {
             return Ok(());
         };
         let answer = Answer {
@@ -120,14 +118,14 @@ fn prepare(
 
 /// Does what is asked for, and says what the planner's call took.
 /// `None`: the simulator has finished.
-fn obey<'a>(
+fn obey(
     planner: &mut Robot,
     size: usize,
     stage: &mut Stage,
     stopwatch: &Stopwatch,
     request: Request<'_>,
-    frame: &'a mut [u8; MAX_LEN],
-) -> Option<(Reply<'a>, Cost)> {
+) -> Option<(Reply, Cost)> {
+    let done = |((), cost)| (Reply::Done, cost);
     Some(match request {
         Request::Observe(sighting) => {
             let (learnt, cost) = stopwatch.measure(|| planner.observe(&sighting));
@@ -137,20 +135,14 @@ fn obey<'a>(
             let (action, cost) = stopwatch.measure(|| planner.tick());
             (Reply::Action(action), cost)
         }
-        Request::Report(motion) => {
-            let ((), cost) = stopwatch.measure(|| planner.report(motion));
-            (Reply::Done, cost)
-        }
-        Request::Resume => {
-            let ((), cost) = stopwatch.measure(|| planner.resume());
-            (Reply::Done, cost)
-        }
+        Request::Report(motion) => done(stopwatch.measure(|| planner.report(motion))),
+        Request::Resume => done(stopwatch.measure(|| planner.resume())),
         Request::Transmit => {
-            let (length, cost) = stopwatch.measure(|| planner.transmit(frame));
-            (
-                Reply::Frame(length.and_then(|length| frame.get(..length))),
-                cost,
-            )
+            let mut buffer = [0; MAX_LEN];
+            let (length, cost) = stopwatch.measure(|| planner.transmit(&mut buffer));
+            let frame = length.and_then(|length| buffer.get(..length));
+            let frame = frame.and_then(|frame| FrameBytes::from_slice(frame).ok());
+            (Reply::Frame(frame), cost)
         }
         Request::Receive(bytes) => {
             let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));
@@ -173,14 +165,8 @@ fn obey<'a>(
             stage.tiles.clear();
             (Reply::Learnt(learnt), cost)
         }
-        Request::Hear(id, status) => {
-            let ((), cost) = stopwatch.measure(|| planner.hear(id, status));
-            (Reply::Done, cost)
-        }
-        Request::Adopt(role) => {
-            let ((), cost) = stopwatch.measure(|| planner.adopt(role));
-            (Reply::Done, cost)
-        }
+        Request::Hear(id, status) => done(stopwatch.measure(|| planner.hear(id, status))),
+        Request::Adopt(role) => done(stopwatch.measure(|| planner.adopt(role))),
         Request::Memory => (Reply::Memory(memory(size)), Cost::default()),
         Request::Start { .. } | Request::Survey { .. } | Request::End => return None,
     })

@@ -62,7 +62,7 @@ pub(crate) fn serve(
         };
         let answer = SurveyAnswer {
             cost,
-            status: planner.status(),
+            state: planner.status(),
             reply,
         };
         host.answer(&answer, outbox)?;

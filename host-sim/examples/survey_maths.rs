@@ -58,7 +58,7 @@ type Decision = (Action<Point>, Option<Cell>);
 type Decisions = BTreeMap<u8, Vec<Decision>>;
 
 /// Robots whose decisions are written down, or replaced by those that were.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Books {
     recorded: Option<Decisions>,
     own: Rc<RefCell<Decisions>>,

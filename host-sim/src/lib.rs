@@ -28,6 +28,7 @@ pub mod measured;
 pub mod medium;
 pub mod planners;
 pub mod record;
+pub mod robot;
 pub mod run;
 pub mod scenario;
 pub mod scene;

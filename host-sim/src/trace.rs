@@ -12,8 +12,8 @@ mod file;
 
 use planner_core::{Cell, Direction};
 
-use crate::fleet::{Deed, Robot, Sent, Step};
 use crate::record::{self, Reason};
+use crate::robot::{Deed, Robot, Sent, Step};
 use crate::scenario::grid::Scenario;
 
 /// A scenario and all that its robots did.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use host_sim::draw;
-use host_sim::fleet::Deed;
 use host_sim::planners::{PlannerKind, Setup};
+use host_sim::robot::Deed;
 use host_sim::run::{self, Host, Options, Outcome, run_compiled};
 use host_sim::scenario::ScenarioError;
 use host_sim::scenario::grid::Scenario;

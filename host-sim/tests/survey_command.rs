@@ -53,11 +53,27 @@ fn what_does_not_apply_is_refused_by_its_name() {
         "--ceiling 40",
         "--skip 0.9",
         "--skip 0",
-        "--kill 0@1",
     ] {
         let name = option.split(' ').next().unwrap();
         let arguments = format!("--terrain town:1 --size 24 {option}");
         assert_refused(path, &arguments, &[name, "does not apply", "town"]);
+    }
+    for place in ["town:1", "gaussian:1"] {
+        for option in [
+            "close 3,4",
+            "blind 3,4",
+            "sensor-fails 0@1",
+            "pose-lost 0@1-2",
+        ] {
+            let arguments = format!("--terrain {place} --size 24 --{option}");
+            let (name, _) = option.split_once(' ').unwrap();
+            assert_refused(path, &arguments, &[name, "does not apply"]);
+        }
+    }
+    for option in ["delay 2", "duplicate 0.5", "corrupt 0.5", "forge 2"] {
+        let arguments = format!("--size 16 --medium ideal --{option}");
+        let (name, _) = option.split_once(' ').unwrap();
+        assert_refused(path, &arguments, &[name, "--medium radio"]);
     }
     assert_refused(
         path,

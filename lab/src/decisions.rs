@@ -2,8 +2,8 @@
 
 use std::collections::VecDeque;
 
-use host_sim::fleet::Deed;
 use host_sim::record::Reason;
+use host_sim::robot::Deed;
 use planner_core::{Cell, Direction};
 
 use crate::watch::Watch;

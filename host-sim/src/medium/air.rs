@@ -2,26 +2,25 @@
 
 use std::sync::Arc;
 
-use planner_core::{Cell, RobotId, sight};
+use planner_core::RobotId;
 
-use super::{Fate, Message};
+use super::{Fate, Message, Space};
 use crate::dice::Dice;
 use crate::scenario::{AirFaults, Conditions, Partition, Reach};
-use crate::world::World;
 
 /// The air of one run: the same calls in the same order meet the same faults.
-pub(super) struct Air {
+pub(crate) struct Air<W> {
     faults: AirFaults,
     /// Share of messages lost, for each pair of robots by itself.
     loss: f64,
-    world: Arc<World>,
+    world: Arc<W>,
     dice: Dice,
     /// The messages of this tick, if anybody asks for them.
     messages: Option<Vec<Message>>,
 }
 
-impl Air {
-    pub(super) fn new(conditions: &Conditions, world: Arc<World>) -> Self {
+impl<W: Space> Air<W> {
+    pub(crate) fn new(conditions: &Conditions, world: Arc<W>) -> Self {
         Self {
             faults: conditions.air.clone(),
             loss: conditions.loss,
@@ -32,11 +31,11 @@ impl Air {
     }
 
     /// Whether what one robot says in `tick` arrives at another.
-    pub(super) fn carries(
+    pub(crate) fn carries(
         &mut self,
         tick: u32,
-        from: (RobotId, Cell),
-        to: (RobotId, Cell),
+        from: (RobotId, W::Place),
+        to: (RobotId, W::Place),
     ) -> bool {
         let is_cut = |partition: &Partition| {
             (partition.from..partition.until).contains(&tick)
@@ -53,29 +52,29 @@ impl Air {
     }
 
     /// Remembers what became of a message, if anybody asks for it.
-    pub(super) fn note(&mut self, from: RobotId, to: RobotId, fate: Fate) {
+    pub(crate) fn note(&mut self, from: RobotId, to: RobotId, fate: Fate) {
         if let Some(messages) = &mut self.messages {
             messages.push(Message { from, to, fate });
         }
     }
 
-    pub(super) fn listen(&mut self) {
+    pub(crate) fn listen(&mut self) {
         self.messages.get_or_insert_default();
     }
 
-    pub(super) fn messages(&self) -> &[Message] {
+    pub(crate) fn messages(&self) -> &[Message] {
         self.messages.as_deref().unwrap_or_default()
     }
 
     /// Forgets the messages of the last tick.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         if let Some(messages) = &mut self.messages {
             messages.clear();
         }
     }
 
     /// The copies of a frame that a robot receives, and how many ticks late.
-    pub(super) fn copies(&mut self, frame: &[u8]) -> Vec<(u32, Vec<u8>)> {
+    pub(crate) fn copies(&mut self, frame: &[u8]) -> Vec<(u32, Vec<u8>)> {
         let copies = 1 + usize::from(self.dice.happens(self.faults.duplication));
         (0..copies)
             .map(|_| {
@@ -92,11 +91,11 @@ impl Air {
             .collect()
     }
 
-    fn reaches(&self, from: Cell, to: Cell) -> bool {
+    fn reaches(&self, from: W::Place, to: W::Place) -> bool {
         match self.faults.reach {
             Reach::Everywhere => true,
-            Reach::Cells(cells) => from.distance_squared(to) <= u32::from(cells).pow(2),
-            Reach::LineOfSight => sight::line_of_sight(from, to, |cell| !self.world.is_free(cell)),
+            Reach::Cells(cells) => self.world.is_near(from, to, cells),
+            Reach::LineOfSight => self.world.is_in_sight(from, to),
         }
     }
 

@@ -1,13 +1,11 @@
 //! Somebody in the air who writes frames of his own: he hears and sees everything, and
 //! has no key.
 
-use planner_core::map::Tile;
-use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
-use planner_core::tile::TileIndex;
-use planner_core::{Activity, Cell, Extent, Map, RobotId, Status};
+use planner_core::radio::{Key, MAX_LEN};
+use planner_core::{Activity, RobotId};
 
+use super::{Claim, Station};
 use crate::dice::Dice;
-use crate::fleet::Robot;
 use crate::scenario::{Forger, Forgery};
 
 /// A forger at work. He draws from a generator of his own, so the air is as without him.
@@ -32,152 +30,92 @@ impl Desk {
         }
     }
 
-    /// Lets every living robot hear what is forged for it in `tick`.
-    pub(super) fn forge<const TW: usize, const TH: usize>(
-        &mut self,
-        tick: u32,
-        robots: &mut [Robot<TW, TH>],
-    ) {
+    /// Lets every robot hear what is forged for it in `tick`.
+    pub(super) fn forge<S: Station>(&mut self, tick: u32, robots: &mut [S]) {
         self.sequence = self.sequence.wrapping_add(1);
-        let ids: Vec<RobotId> = robots.iter().map(|robot| robot.id).collect();
-        let Some(first) = robots.first().map(|robot| robot.position) else {
+        let ids: Vec<RobotId> = robots.iter().map(Station::id).collect();
+        let Some(first) = robots.first().map(Station::place) else {
             return;
         };
-        for robot in robots.iter_mut().filter(|robot| robot.alive) {
+        for robot in robots.iter_mut().filter(|robot| robot.is_awake()) {
             for frame in self.frames(tick, robot, &ids, first) {
                 let mut buffer = [0; MAX_LEN];
                 for key in [None, Some(&self.key)] {
-                    let length = frame.encode(key, &mut buffer);
-                    let _ = robot.planner.receive(&buffer[..length]);
+                    let length = S::encode(&frame, key, &mut buffer);
+                    robot.receive(&buffer[..length]);
                 }
             }
         }
     }
 
-    fn frames<const TW: usize, const TH: usize>(
+    fn frames<S: Station>(
         &mut self,
         tick: u32,
-        robot: &Robot<TW, TH>,
+        robot: &S,
         ids: &[RobotId],
-        first: Cell,
-    ) -> Vec<Frame> {
-        let map = robot.planner.map();
-        let extent = map.extent();
-        let (here, goal) = (robot.position, robot.planner.status().goal);
+        first: S::Place,
+    ) -> Vec<S::Frame> {
         let frames = self.forger.frames;
         let ghosts = 0..frames.min(256);
-        let exploring = |position| Status {
+        let ghost = |id: u16, position| Claim {
+            sender: RobotId(id as u8),
+            sequence: self.sequence,
             position,
             goal: None,
             activity: Activity::Exploring,
         };
-        let ghost = |id: u16, status| Frame {
-            grid: grid(extent),
-            sender: RobotId(id as u8),
-            sequence: self.sequence,
-            status,
-            tiles: Default::default(),
-        };
-        match self.forger.kind {
-            Forgery::Any => (0..frames).map(|_| self.drawn(extent, true)).collect(),
-            Forgery::Hints => (0..frames).map(|_| self.drawn(extent, false)).collect(),
-            Forgery::OwnCell => ghosts.map(|id| ghost(id, exploring(here))).collect(),
-            Forgery::Around => free_around(map, here)
+        let claims: Vec<Claim<S::Place>> = match (self.forger.kind, robot.goal()) {
+            (Forgery::Any, _) => return (0..frames).map(|_| self.drawn(robot, true)).collect(),
+            (Forgery::Hints, _) => return (0..frames).map(|_| self.drawn(robot, false)).collect(),
+            (Forgery::OwnCell, _) => ghosts.map(|id| ghost(id, robot.place())).collect(),
+            (Forgery::Around, _) => (robot.around().into_iter())
                 .zip(ghosts)
-                .map(|(cell, id)| ghost(100 + id, exploring(cell)))
+                .map(|(place, id)| ghost(100 + id, place))
                 .collect(),
-            Forgery::Goal => goal.map_or(Vec::new(), |cell| {
-                let there = Status {
+            (Forgery::Goal | Forgery::Jump, None) => Vec::new(),
+            (Forgery::Goal, goal @ Some(place)) => ghosts
+                .map(|id| Claim {
                     goal,
-                    ..exploring(cell)
-                };
-                ghosts.map(|id| ghost(id, there)).collect()
-            }),
-            Forgery::Jump => goal.map_or(Vec::new(), |cell| {
+                    ..ghost(id, place)
+                })
+                .collect(),
+            (Forgery::Jump, Some(place)) => {
                 let is_there = (tick / 3).is_multiple_of(2);
-                let at = if is_there { cell } else { Cell::new(0, 0) };
-                ghosts.map(|id| ghost(id, exploring(at))).collect()
-            }),
-            Forgery::Stolen if !tick.is_multiple_of(200) => Vec::new(),
-            Forgery::Stolen => {
-                let stopped = Status {
-                    activity: Activity::Stopped,
-                    ..exploring(Cell::new(0, 0))
-                };
-                let sequence = (tick as u16).wrapping_add(30_000);
-                ids.iter()
-                    .map(|id| Frame {
-                        sequence,
-                        ..ghost(id.0.into(), stopped)
-                    })
-                    .collect()
+                let at = if is_there { place } else { robot.corner() };
+                ghosts.map(|id| ghost(id, at)).collect()
             }
-            Forgery::Crowd => (0..256).map(|id| ghost(id, exploring(first))).collect(),
-        }
+            (Forgery::Stolen, _) if !tick.is_multiple_of(200) => Vec::new(),
+            (Forgery::Stolen, _) => ids
+                .iter()
+                .map(|id| Claim {
+                    sequence: (tick as u16).wrapping_add(30_000),
+                    activity: Activity::Stopped,
+                    ..ghost(id.0.into(), robot.corner())
+                })
+                .collect(),
+            (Forgery::Crowd, _) => (0..256).map(|id| ghost(id, first)).collect(),
+        };
+        let forged = |claim| robot.forged(claim, 0, &mut self.dice);
+        claims.into_iter().map(forged).collect()
     }
 
     /// A frame with anything in it, in the right form.
-    fn drawn(&mut self, extent: Extent, with_tiles: bool) -> Frame {
-        let status = Status {
-            position: self.cell(extent),
-            goal: (self.dice.below(2) == 0).then(|| self.cell(extent)),
-            activity: match self.dice.below(8) {
-                0 => Activity::Stopped,
-                _ => Activity::Exploring,
-            },
+    fn drawn<S: Station>(&mut self, robot: &S, with_pieces: bool) -> S::Frame {
+        let dice = &mut self.dice;
+        let position = robot.anywhere(dice);
+        let goal = (dice.below(2) == 0).then(|| robot.anywhere(dice));
+        let activity = match dice.below(8) {
+            0 => Activity::Stopped,
+            _ => Activity::Exploring,
         };
-        let tiles = if with_tiles { self.dice.below(3) } else { 0 };
-        Frame {
-            grid: grid(extent),
-            sender: RobotId(self.dice.below(256) as u8),
-            sequence: self.dice.below(1 << 16) as u16,
-            status,
-            tiles: (0..tiles).map(|_| self.tile(extent)).collect(),
-        }
+        let pieces = if with_pieces { dice.below(3) } else { 0 };
+        let claim = Claim {
+            sender: RobotId(dice.below(256) as u8),
+            sequence: dice.below(1 << 16) as u16,
+            position,
+            goal,
+            activity,
+        };
+        robot.forged(claim, pieces, dice)
     }
-
-    fn cell(&mut self, extent: Extent) -> Cell {
-        let mut below = |cells: u16| self.dice.below(cells.into()) as i16;
-        Cell::new(below(extent.width), below(extent.height))
-    }
-
-    fn tile(&mut self, extent: Extent) -> TileRecord {
-        let (at, _) = TileIndex::of(self.cell(extent)).expect("cells of a grid have tiles");
-        let inside = (0..64)
-            .filter(|&bit| extent.contains(at.cell(bit)))
-            .fold(0, |mask, bit| mask | 1 << bit);
-        // Few cells, or whole tiles of them.
-        let few = self.dice.bits() & self.dice.bits() & self.dice.bits();
-        let known = inside & if self.dice.below(4) == 0 { !0 } else { few };
-        let obstacle = known & self.dice.bits();
-        TileRecord {
-            at,
-            tile: Tile {
-                known,
-                obstacle,
-                visited: known & !obstacle & self.dice.bits(),
-            },
-        }
-    }
-}
-
-fn grid(extent: Extent) -> GridId {
-    let link = LinkConfig::new();
-    GridId::of(extent, link.origin_mm, link.cell_mm)
-}
-
-/// Cells that the map shows free, nearest first, from the robot's own on.
-fn free_around<const TW: usize, const TH: usize>(
-    map: &Map<TW, TH>,
-    here: Cell,
-) -> impl Iterator<Item = Cell> + '_ {
-    let ring = move |radius: i16| {
-        let cells =
-            (-radius..=radius).flat_map(move |dy| (-radius..=radius).map(move |dx| (dx, dy)));
-        cells.filter(move |(dx, dy)| dx.abs().max(dy.abs()) == radius)
-    };
-    (0..8)
-        .flat_map(ring)
-        .map(move |(dx, dy)| Cell::new(here.x + dx, here.y + dy))
-        .filter(|&cell| map.is_free(cell))
 }

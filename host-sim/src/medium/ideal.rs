@@ -4,7 +4,8 @@ use planner_core::{Map, RobotId, Status, TileSet};
 
 use super::air::Air;
 use super::{Fate, Medium, Message};
-use crate::fleet::Robot;
+use crate::robot::Robot;
+use crate::world::World;
 
 /// Every living robot hands its whole map and its status to every other; all
 /// speak at the same moment, and the air decides who misses whom.
@@ -12,7 +13,7 @@ use crate::fleet::Robot;
 /// Only tiles that the receiver may lack are joined, which gives the same maps
 /// as joining all of them.
 pub struct Ideal<const TW: usize, const TH: usize> {
-    air: Air,
+    air: Air<World>,
     /// Ticks between two exchanges; 0: never.
     sync: u32,
     voices: Vec<Voice<TW, TH>>,
@@ -32,7 +33,7 @@ struct Voice<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Ideal<TW, TH> {
-    pub(super) fn new(air: Air, sync: u32) -> Self {
+    pub(super) fn new(air: Air<World>, sync: u32) -> Self {
         Self {
             air,
             sync,

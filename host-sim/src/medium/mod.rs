@@ -1,21 +1,27 @@
 //! How robots hear of each other.
 
 mod air;
+mod flown;
 mod forger;
+mod grid;
 mod ideal;
 mod radio;
+mod station;
 
 use std::sync::Arc;
 
 use planner_core::RobotId;
 
+pub(crate) use air::Air;
+pub(crate) use flown::{any_point, any_voxel, surface_frame, voxel_frame};
 pub use ideal::Ideal;
 pub use radio::Radio;
+pub use station::Space;
+pub(crate) use station::{Claim, Station};
 
-use crate::fleet::Robot;
+use crate::robot::Robot;
 use crate::scenario::{Conditions, MediumKind};
 use crate::world::World;
-use air::Air;
 
 /// What carries maps and positions between robots.
 pub trait Medium<const TW: usize, const TH: usize> {
@@ -61,10 +67,9 @@ pub fn build<const TW: usize, const TH: usize>(
     conditions: &Conditions,
     world: Arc<World>,
 ) -> Box<dyn Medium<TW, TH>> {
-    let air = Air::new(conditions, world);
     match conditions.medium {
-        MediumKind::Ideal => Box::new(Ideal::new(air, conditions.sync)),
-        MediumKind::Radio => Box::new(Radio::new(air, conditions)),
+        MediumKind::Ideal => Box::new(Ideal::new(Air::new(conditions, world), conditions.sync)),
+        MediumKind::Radio => Box::new(Radio::new(conditions, world)),
     }
 }
 

@@ -1,18 +1,20 @@
 //! The radio: everything that one robot learns from another is in a frame.
 
-use planner_core::RobotId;
+use std::sync::Arc;
+
 use planner_core::radio::MAX_LEN;
 
 use super::air::Air;
 use super::forger::Desk;
-use super::{Fate, Medium, Message};
-use crate::fleet::Robot;
+use super::{Fate, Medium, Message, Space, Station};
+use crate::robot::Robot;
 use crate::scenario::Conditions;
+use crate::world::World;
 
 /// Every robot broadcasts as many frames as its planner's budget allows; the air
 /// decides who receives which, when, how often and in what state.
-pub struct Radio {
-    air: Air,
+pub struct Radio<W: Space> {
+    pub(crate) air: Air<W>,
     /// Ticks between two transmissions of a robot; 0: never.
     sync: u32,
     /// Frames on their way, those sent first first.
@@ -23,73 +25,81 @@ pub struct Radio {
 /// One copy of a frame on its way to one robot.
 struct Flight {
     due: u32,
-    from: RobotId,
-    to: RobotId,
+    from: usize,
+    to: usize,
     bytes: Vec<u8>,
 }
 
-impl Radio {
-    pub(super) fn new(air: Air, conditions: &Conditions) -> Self {
+impl<W: Space> Radio<W> {
+    pub(crate) fn new(conditions: &Conditions, world: Arc<W>) -> Self {
         let forger = conditions.air.forger;
         Self {
-            air,
+            air: Air::new(conditions, world),
             sync: conditions.sync,
             flights: Vec::new(),
             forger: forger.map(|forger| Desk::new(forger, conditions.seed)),
         }
     }
 
-    fn speak<const TW: usize, const TH: usize>(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
-        for speaker in 0..robots.len() {
-            if !robots[speaker].alive {
-                continue;
-            }
-            let mut buffer = [0; MAX_LEN];
-            while let Some(length) = robots[speaker].planner.transmit(&mut buffer) {
-                let frame = &buffer[..length];
-                let robot = &mut robots[speaker];
-                robot.sent.frames += 1;
-                robot.sent.bytes += length as u32;
-                let from = (robot.id, robot.position);
-                for listener in robots.iter().filter(|other| other.id != from.0) {
-                    if self
-                        .air
-                        .carries(tick, from, (listener.id, listener.position))
-                    {
-                        for (late, bytes) in self.air.copies(frame) {
-                            self.flights.push(Flight {
-                                due: tick.saturating_add(late),
-                                from: from.0,
-                                to: listener.id,
-                                bytes,
-                            });
-                        }
+    /// Whether robots speak in `tick`.
+    pub(crate) fn is_open(&self, tick: u32) -> bool {
+        self.sync != 0 && tick.is_multiple_of(self.sync)
+    }
+
+    /// A robot sends what its budget allows, at most so many frames.
+    pub(crate) fn transmit<S: Station<Place = W::Place>>(
+        &mut self,
+        tick: u32,
+        robots: &mut [S],
+        speaker: usize,
+        most: usize,
+    ) {
+        if !robots[speaker].is_awake() || !self.is_open(tick) {
+            return;
+        }
+        let mut buffer = [0; MAX_LEN];
+        for _ in 0..most {
+            let Some(length) = robots[speaker].transmit(&mut buffer) else {
+                break;
+            };
+            let from = (robots[speaker].id(), robots[speaker].place());
+            for (to, listener) in robots.iter().enumerate().filter(|(to, _)| *to != speaker) {
+                let listener = (listener.id(), listener.place());
+                if self.air.carries(tick, from, listener) {
+                    for (late, bytes) in self.air.copies(&buffer[..length]) {
+                        self.flights.push(Flight {
+                            due: tick.saturating_add(late),
+                            from: speaker,
+                            to,
+                            bytes,
+                        });
                     }
                 }
             }
         }
     }
 
-    fn deliver<const TW: usize, const TH: usize>(
-        &mut self,
-        tick: u32,
-        robots: &mut [Robot<TW, TH>],
-    ) {
+    /// Robots hear what is due in `tick`.
+    pub(crate) fn deliver<S: Station<Place = W::Place>>(&mut self, tick: u32, robots: &mut [S]) {
         for flight in self.flights.extract_if(.., |flight| flight.due <= tick) {
-            let listener = &mut robots[usize::from(flight.to.0)];
-            if listener.alive {
-                self.air.note(flight.from, flight.to, Fate::Heard);
-                // What is wrong with a frame is for the planner to find.
-                let _ = listener.planner.receive(&flight.bytes);
+            if robots[flight.to].is_awake() {
+                let from = robots[flight.from].id();
+                let listener = &mut robots[flight.to];
+                self.air.note(from, listener.id(), Fate::Heard);
+                listener.receive(&flight.bytes);
             }
         }
-        for flight in &self.flights {
-            self.air.note(flight.from, flight.to, Fate::UnderWay);
+    }
+
+    /// Robots hear what is forged for them in `tick`.
+    pub(crate) fn forge<S: Station>(&mut self, tick: u32, robots: &mut [S]) {
+        if let Some(forger) = &mut self.forger {
+            forger.forge(tick, robots);
         }
     }
 }
 
-impl<const TW: usize, const TH: usize> Medium<TW, TH> for Radio {
+impl<const TW: usize, const TH: usize> Medium<TW, TH> for Radio<World> {
     fn listen(&mut self) {
         self.air.listen();
     }
@@ -100,12 +110,14 @@ impl<const TW: usize, const TH: usize> Medium<TW, TH> for Radio {
 
     fn exchange(&mut self, tick: u32, robots: &mut [Robot<TW, TH>]) {
         self.air.clear();
-        if self.sync != 0 && tick.is_multiple_of(self.sync) {
-            self.speak(tick, robots);
+        for speaker in 0..robots.len() {
+            self.transmit(tick, robots, speaker, usize::MAX);
         }
         self.deliver(tick, robots);
-        if let Some(forger) = &mut self.forger {
-            forger.forge(tick, robots);
+        for flight in &self.flights {
+            let (from, to) = (robots[flight.from].id, robots[flight.to].id);
+            self.air.note(from, to, Fate::UnderWay);
         }
+        self.forge(tick, robots);
     }
 }

@@ -9,8 +9,9 @@ use proptest::prelude::*;
 
 use super::air::Air;
 use super::{Fate, Medium, build};
-use crate::fleet::{Fleet, Robot, Rules};
+use crate::fleet::{Fleet, Rules};
 use crate::planners::{PlannerKind, Setup};
+use crate::robot::Robot;
 use crate::scenario::{AirFaults, Conditions, Event, Faults, MediumKind, Partition, Reach};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate};
@@ -19,7 +20,7 @@ const SIDE: usize = 4;
 
 /// Every receiver joins everything that every sender knew before the exchange.
 struct WholeMaps {
-    air: Air,
+    air: Air<World>,
     sync: u32,
     all: TileSet<SIDE>,
 }
@@ -52,7 +53,7 @@ impl Medium<SIDE, SIDE> for WholeMaps {
     }
 }
 
-fn whole_maps(air: Air, sync: u32) -> Box<dyn Medium<SIDE, SIDE>> {
+fn whole_maps(air: Air<World>, sync: u32) -> Box<dyn Medium<SIDE, SIDE>> {
     let mut all = TileSet::new();
     for (y, x) in (0..SIDE as u8).flat_map(|y| (0..SIDE as u8).map(move |x| (y, x))) {
         all.insert(TileIndex::new(x, y));
@@ -116,7 +117,7 @@ fn conditions(air: AirFaults, loss: f64) -> Conditions {
     }
 }
 
-fn air(faults: AirFaults, loss: f64) -> Air {
+fn air(faults: AirFaults, loss: f64) -> Air<World> {
     let row = |cell: Cell| cell.x == 5;
     let world = World::from_fn("wall", Extent::new(20, 3), row).unwrap();
     Air::new(&conditions(faults, loss), Arc::new(world))

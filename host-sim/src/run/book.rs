@@ -7,7 +7,8 @@ use planner_core::{Cell, Direction, Map};
 
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
-use crate::fleet::{Deed, Fleet, Robot, Sent};
+use crate::fleet::Fleet;
+use crate::robot::{Deed, Robot, Sent};
 use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::sensor::Sensor;

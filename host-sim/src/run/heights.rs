@@ -7,22 +7,26 @@ use std::time::Instant;
 use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
-use planner_core::radio::MAX_LEN;
+use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
 use planner_core::surface::{Patch, Surface, clearance};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
 
 use crate::baselines::surveys::{Follower, Guide, Rounds, assign};
 use crate::dice::Dice;
-use crate::fleet::Sent;
+use crate::medium::{Claim, Radio, Station, any_point, surface_frame};
 use crate::record::Deed;
+use crate::robot::Sent;
 use crate::scenario::heights::{Planner, Scenario};
-use crate::scenario::{Faults, MediumKind, ScenarioError};
+use crate::scenario::{Conditions, Event, Faults, MediumKind, ScenarioError};
 use crate::survey::{Record, Safety, Trace};
 use crate::terrain::{Terrain, look};
 
+/// Takes the chance of sleep apart from that of the air: "sleep".
+const SLEEP: u64 = 0x73_6c65_6570;
+
 /// Where the planners of a survey are.
-pub trait Host {
+pub trait Host: Clone + 'static {
     /// The planner of a robot.
     fn surveyor<const T: usize>(
         &self,
@@ -141,8 +145,11 @@ impl<const T: usize> Pilot<T> {
 }
 
 struct Robot<const T: usize> {
+    id: RobotId,
     pilot: Pilot<T>,
     at: Point,
+    /// Whether its body is in the air.
+    is_there: bool,
     alive: bool,
     awake: bool,
     stopped: bool,
@@ -150,12 +157,80 @@ struct Robot<const T: usize> {
     sent: Sent,
 }
 
+impl<const T: usize> Station for Robot<T> {
+    type Place = Point;
+    type Frame = SurfaceFrame;
+
+    fn id(&self) -> RobotId {
+        self.id
+    }
+
+    fn place(&self) -> Point {
+        self.at
+    }
+
+    fn is_awake(&self) -> bool {
+        self.awake
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let length = self.pilot.get_mut().transmit(buffer)?;
+        self.sent.count(length);
+        Some(length)
+    }
+
+    fn receive(&mut self, frame: &[u8]) {
+        let _ = self.pilot.get_mut().receive(frame);
+    }
+
+    fn goal(&self) -> Option<Point> {
+        let goal = self.pilot.get().status().goal;
+        goal.map(|cell| Point::over(cell, self.at.z))
+    }
+
+    fn corner(&self) -> Point {
+        Point::over(Cell::new(0, 0), self.at.z)
+    }
+
+    fn anywhere(&self, dice: &mut Dice) -> Point {
+        let knowledge = self.pilot.get().knowledge();
+        any_point(
+            knowledge.surface().extent(),
+            knowledge.limits().ceiling,
+            dice,
+        )
+    }
+
+    fn around(&self) -> Vec<Point> {
+        let beside =
+            (-1i8..=1).flat_map(|dy| (-1i8..=1).map(move |dx| (f32::from(dx), f32::from(dy))));
+        let beside = beside.filter(|beside| *beside != (0.0, 0.0));
+        let step = |(dx, dy)| self.at.offset(dx, dy, 0.0);
+        std::iter::once(self.at).chain(beside.map(step)).collect()
+    }
+
+    fn forged(&self, claim: Claim<Point>, pieces: u32, dice: &mut Dice) -> SurfaceFrame {
+        let extent = self.pilot.get().knowledge().surface().extent();
+        surface_frame(extent, claim, pieces, dice)
+    }
+
+    fn encode(frame: &SurfaceFrame, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
+        frame.encode(key, buffer)
+    }
+}
+
+/// Makes a robot's planner.
+type Build<const T: usize> = Box<dyn Fn(RobotId) -> Result<Pilot<T>, SetupError>>;
+
 struct Simulation<const T: usize> {
     terrain: Arc<Terrain>,
     scenario: Scenario,
+    build: Build<T>,
     robots: Vec<Robot<T>>,
     /// What anybody has seen.
     union: Box<Surface<T, T>>,
+    radio: Radio<Terrain>,
+    /// For who sleeps.
     dice: Dice,
     now: u32,
     trace: Trace,
@@ -183,51 +258,55 @@ impl<const T: usize> Simulation<T> {
     ) -> Result<Self, ScenarioError> {
         let extent = terrain.extent();
         let starts = scenario.starts(&terrain)?;
-        let robots = starts
-            .iter()
-            .copied()
-            .enumerate()
-            .map(|(id, at)| {
-                let pilot = pilot(host, extent, scenario, RobotId(id as u8))?;
-                Ok(Robot {
-                    pilot,
-                    at,
-                    alive: true,
-                    awake: true,
-                    stopped: false,
-                    sent: Sent::default(),
-                })
+        let build = {
+            let (host, scenario) = (host.clone(), scenario.clone());
+            Box::new(move |id| pilot(&host, extent, &scenario, id))
+        };
+        let robot = |(&at, id)| {
+            let id = RobotId(id);
+            Ok(Robot {
+                id,
+                pilot: build(id)?,
+                at,
+                is_there: false,
+                alive: false,
+                awake: false,
+                stopped: false,
+                sent: Sent::default(),
             })
-            .collect::<Result<_, SetupError>>()?;
+        };
+        let robots = starts.iter().zip(0..).map(robot);
         Ok(Self {
+            robots: robots.collect::<Result<_, SetupError>>()?,
+            build,
             trace: Trace::new(&terrain, scenario, starts),
+            radio: Radio::new(&scenario.conditions, terrain.clone()),
             terrain,
             scenario: scenario.clone(),
-            robots,
             union: Box::new(Surface::new(extent).map_err(SetupError::from)?),
-            dice: Dice::new(scenario.conditions.seed),
+            dice: Dice::new(scenario.conditions.seed ^ SLEEP),
             now: 0,
         })
     }
 
     /// One step of the fleet; says whether there is another.
     fn advance(&mut self) -> bool {
-        let deaths = &self.scenario.conditions.faults.deaths;
-        for (robot, id) in self.robots.iter_mut().zip(0..) {
-            robot.alive &= !Faults::befalls(deaths, RobotId(id), self.now);
-        }
+        self.meet_fate();
         for i in 0..self.robots.len() {
             self.robots[i].awake = self.robots[i].alive && !self.dice.happens(self.scenario.skip);
+            self.robots[i].sent = Sent::default();
         }
         self.sense();
         self.share();
         self.trace.seen.push(self.union.known_columns());
-        let going = self
-            .robots
-            .iter()
-            .any(|robot| robot.alive && !robot.stopped);
+        let Conditions {
+            faults, max_ticks, ..
+        } = &self.scenario.conditions;
+        let lives = |robot: &Robot<T>| faults.is_alive(robot.id, self.now);
+        let going = faults.still_to_come(self.now + 1)
+            || (self.robots.iter()).any(|robot| lives(robot) && !robot.stopped);
         self.trace.all_stopped = !going;
-        if !going || self.now >= self.scenario.conditions.max_ticks {
+        if !going || self.now >= *max_ticks {
             return false;
         }
         let orders = self.orders();
@@ -239,6 +318,29 @@ impl<const T: usize> Simulation<T> {
         self.check_safety();
         self.now += 1;
         true
+    }
+
+    /// Deaths, arrivals and restarts of this step, and who goes on. Who comes late waits
+    /// until nobody is near its start.
+    fn meet_fate(&mut self) {
+        let faults = &self.scenario.conditions.faults;
+        for i in 0..self.robots.len() {
+            let robot = &self.robots[i];
+            let lives = faults.is_alive(robot.id, self.now);
+            let is_there = robot.is_there || lives && !self.collides(i, robot.at);
+            let robot = &mut self.robots[i];
+            let befalls = |events: &[Event]| Faults::befalls(events, robot.id, self.now);
+            let (restarts, resumes) = (befalls(&faults.restarts), befalls(&faults.resumes));
+            robot.is_there = is_there;
+            robot.alive = lives && is_there;
+            if robot.alive && restarts {
+                robot.pilot = (self.build)(robot.id).expect("it was set up like this before");
+            }
+            if robot.alive && resumes {
+                robot.pilot.get_mut().resume();
+            }
+            robot.stopped &= !(restarts || resumes);
+        }
     }
 
     fn sense(&mut self) {
@@ -258,34 +360,31 @@ impl<const T: usize> Simulation<T> {
         match self.scenario.conditions.medium {
             MediumKind::Ideal => self.share_maps(),
             MediumKind::Radio => {
+                self.radio.deliver(self.now, &mut self.robots);
                 let frames = usize::from(self.scenario.conditions.byte_budget) / MAX_LEN;
                 // One is left for after the flight.
                 for i in 0..self.robots.len() {
-                    self.robots[i].sent = Sent::default();
-                    if self.robots[i].awake {
-                        self.transmit(i, frames.saturating_sub(1).max(1));
-                    }
+                    self.transmit(i, frames.saturating_sub(1).max(1));
                 }
+                self.radio.forge(self.now, &mut self.robots);
             }
         }
     }
 
     /// Robot `i` sends as many frames as its budget allows, at most `most`.
     fn transmit(&mut self, i: usize, most: usize) {
-        let mut frame = [0; MAX_LEN];
-        for _ in 0..most {
-            let Some(length) = self.robots[i].pilot.get_mut().transmit(&mut frame) else {
-                break;
-            };
-            self.robots[i].sent.frames += 1;
-            self.robots[i].sent.bytes += length as u32;
-            for to in (0..self.robots.len()).filter(|&to| to != i) {
-                if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
-                    let heard = self.robots[to].pilot.get_mut().receive(&frame[..length]);
-                    heard.expect("robots understand each other");
-                }
-            }
-        }
+        self.radio.transmit(self.now, &mut self.robots, i, most);
+        self.radio.deliver(self.now, &mut self.robots);
+    }
+
+    /// Whether robot `to` hears now what robot `from` says, without a frame.
+    fn hears(&mut self, from: usize, to: usize) -> bool {
+        let end = |robot: &Robot<T>| (robot.id, robot.at);
+        let (from, to) = (&self.robots[from], &self.robots[to]);
+        from.id != to.id
+            && to.awake
+            && self.radio.is_open(self.now)
+            && self.radio.air.carries(self.now, end(from), end(to))
     }
 
     /// Everybody's position and news to everybody, however much it is.
@@ -304,8 +403,8 @@ impl<const T: usize> Simulation<T> {
             let Some((status, patches)) = message else {
                 continue;
             };
-            for to in (0..self.robots.len()).filter(|&to| to != from) {
-                if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
+            for to in 0..self.robots.len() {
+                if self.hears(from, to) {
                     let pilot = self.robots[to].pilot.get_mut();
                     pilot.hear(RobotId(from as u8), *status);
                     for patch in patches {
@@ -317,7 +416,7 @@ impl<const T: usize> Simulation<T> {
     }
 
     /// The centre's targets, if there is a centre.
-    fn orders(&self) -> (Vec<Option<planner_core::Cell>>, u32) {
+    fn orders(&self) -> (Vec<Option<Cell>>, u32) {
         let rounds = match self.scenario.planner {
             Planner::Greedy => Rounds::Many,
             Planner::GreedyUnique => Rounds::One,
@@ -328,7 +427,7 @@ impl<const T: usize> Simulation<T> {
     }
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
-    fn act(&mut self, i: usize, (orders, cost): &(Vec<Option<planner_core::Cell>>, u32)) {
+    fn act(&mut self, i: usize, (orders, cost): &(Vec<Option<Cell>>, u32)) {
         #[cfg(not(target_arch = "wasm32"))]
         let began = Instant::now();
         if let Pilot::Follower(follower) = &mut self.robots[i].pilot
@@ -373,8 +472,8 @@ impl<const T: usize> Simulation<T> {
         match self.scenario.conditions.medium {
             MediumKind::Radio => self.transmit(i, 1),
             MediumKind::Ideal => {
-                for to in (0..self.robots.len()).filter(|&to| to != i) {
-                    if self.robots[to].awake && !self.dice.happens(self.scenario.conditions.loss) {
+                for to in 0..self.robots.len() {
+                    if self.hears(i, to) {
                         self.robots[to]
                             .pilot
                             .get_mut()

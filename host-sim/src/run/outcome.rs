@@ -3,7 +3,7 @@
 use planner_core::Stop;
 use planner_core::radio::Hearsay;
 
-use crate::fleet::{Sent, Violation};
+use crate::robot::{Sent, Violation};
 
 /// What happened in a run.
 #[derive(Clone, Debug, PartialEq, Eq)]

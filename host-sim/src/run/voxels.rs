@@ -1,25 +1,127 @@
-//! Runs in a scene of voxels: sense, share, decide in turn, fly; until every robot has stopped.
+//! Runs in a scene of voxels: sense, share, decide in turn, fly; until every living robot
+//! has stopped.
 
 use std::collections::{BTreeSet, HashSet};
+use std::sync::Arc;
 
-use planner_core::radio::MAX_LEN;
+use planner_core::radio::{Key, MAX_LEN, VoxelFrame};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::{Config, VoxelSurvey};
-use planner_core::{Action, RobotId};
+use planner_core::{Action, ExtentError, RobotId};
 
 use crate::dice::Dice;
-use crate::fleet::Sent;
+use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::Deed;
+use crate::robot::Sent;
 use crate::scenario::voxels::Scenario;
-use crate::scenario::{MediumKind, ScenarioError};
+use crate::scenario::{Faults, MediumKind, ScenarioError};
 use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
 use crate::survey::voxels::{Record, VoxelTrace};
 
-type Robot = VoxelSurvey<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>;
+type Planner = VoxelSurvey<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>;
 
 /// Words of its map that a robot repeats in each step, in turn.
 const IN_TURN: usize = 16;
+
+/// A planner and the body that it moves.
+struct Robot {
+    id: RobotId,
+    planner: Box<Planner>,
+    at: Voxel,
+    alive: bool,
+    stopped: bool,
+    /// What it sees in this step.
+    view: Vec<(Voxel, bool)>,
+    /// The word that it repeats next.
+    turn: (TileIndex, u8),
+    /// Frames and bytes sent in this step.
+    sent: Sent,
+}
+
+impl Robot {
+    fn new(id: RobotId, at: Voxel, planner: Box<Planner>) -> Self {
+        Self {
+            id,
+            planner,
+            at,
+            alive: false,
+            stopped: false,
+            view: Vec::new(),
+            turn: (TileIndex { x: 0, y: 0 }, 0),
+            sent: Sent::default(),
+        }
+    }
+
+    /// What it sees, and a few words of its map.
+    fn news(&mut self) -> Vec<VoxelPatch> {
+        let tile = |voxel: Voxel| TileIndex::of(voxel.cell()).expect("inside").0;
+        let seen = self.view.iter();
+        let mut touched: BTreeSet<(TileIndex, u8)> = seen
+            .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
+            .collect();
+        let volume = self.planner.volume();
+        for _ in 0..IN_TURN {
+            touched.insert(self.turn);
+            self.turn = volume.after(self.turn.0, self.turn.1);
+        }
+        let patches = touched.into_iter().map(|(tile, z)| volume.patch(tile, z));
+        patches.collect()
+    }
+}
+
+impl Station for Robot {
+    type Place = Voxel;
+    type Frame = VoxelFrame;
+
+    fn id(&self) -> RobotId {
+        self.id
+    }
+
+    fn place(&self) -> Voxel {
+        self.at
+    }
+
+    fn is_awake(&self) -> bool {
+        self.alive
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        let length = self.planner.transmit(buffer)?;
+        self.sent.count(length);
+        Some(length)
+    }
+
+    fn receive(&mut self, frame: &[u8]) {
+        let _ = self.planner.receive(frame);
+    }
+
+    fn goal(&self) -> Option<Voxel> {
+        self.planner.status().goal
+    }
+
+    fn corner(&self) -> Voxel {
+        Voxel::new(0, 0, 0)
+    }
+
+    fn anywhere(&self, dice: &mut Dice) -> Voxel {
+        let volume = self.planner.volume();
+        any_voxel(volume.extent(), volume.levels(), dice)
+    }
+
+    fn around(&self) -> Vec<Voxel> {
+        std::iter::once(self.at).chain(self.at.beside()).collect()
+    }
+
+    fn forged(&self, claim: Claim<Voxel>, pieces: u32, dice: &mut Dice) -> VoxelFrame {
+        let volume = self.planner.volume();
+        voxel_frame(volume.extent(), volume.levels(), claim, pieces, dice)
+    }
+
+    fn encode(frame: &VoxelFrame, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
+        frame.encode(key, buffer)
+    }
+}
 
 /// Runs `scenario` in `scene`.
 ///
@@ -33,10 +135,11 @@ pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, ScenarioErr
 
 /// A run that goes on step by step, for whoever wants to watch.
 pub struct Simulation {
-    scene: Scene,
-    robots: Vec<Box<Robot>>,
+    scene: Arc<Scene>,
+    config: Config,
+    robots: Vec<Robot>,
     trace: VoxelTrace,
-    medium: Medium,
+    radio: Radio<Scene>,
     visible: HashSet<Voxel>,
     known: HashSet<Voxel>,
     /// Occupied voxels seen.
@@ -61,36 +164,34 @@ impl Simulation {
             range: scenario.range,
             link: scenario.conditions.link(),
         };
-        let mut robots = Vec::new();
-        for id in 0..scenario.robots {
-            let robot = Robot::new(config, RobotId(id as u8), scene.extent(), scene.levels());
-            robots.push(Box::new(robot?));
-        }
+        let robot = |id| {
+            let id = RobotId(id as u8);
+            Ok(Robot::new(id, start, planner(scene, config, id)?))
+        };
+        let robots = (0..scenario.robots).map(robot);
+        let robots = robots.collect::<Result<_, ExtentError>>()?;
         let visible = visible(scene, start, scenario.range);
         if visible.is_empty() {
             return Err(ScenarioError::NothingToSee);
         }
-        let trace = VoxelTrace {
-            scenario: scenario.clone(),
-            scene: scene.clone(),
-            ways: vec![vec![start]; scenario.robots],
-            records: Vec::new(),
-            found: Vec::new(),
-            visible: visible.len() as u32,
-            seen: Vec::new(),
-            all_stopped: false,
-            stops: vec![None; scenario.robots],
-            violations: 0,
-        };
+        let scene = Arc::new(scene.clone());
         Ok(Self {
-            scene: scene.clone(),
+            config,
             robots,
-            trace,
-            medium: Medium {
-                loss: scenario.conditions.loss,
-                dice: Dice::new(scenario.conditions.seed),
-                turns: vec![(TileIndex { x: 0, y: 0 }, 0); scenario.robots],
+            trace: VoxelTrace {
+                scenario: scenario.clone(),
+                scene: (*scene).clone(),
+                ways: vec![vec![start]; scenario.robots],
+                records: Vec::new(),
+                found: Vec::new(),
+                visible: visible.len() as u32,
+                seen: Vec::new(),
+                all_stopped: false,
+                stops: vec![None; scenario.robots],
+                violations: 0,
             },
+            radio: Radio::new(&scenario.conditions, scene.clone()),
+            scene,
             visible,
             known: HashSet::new(),
             seen: 0,
@@ -110,161 +211,160 @@ impl Simulation {
 
     /// One step of the fleet; false if the run is over, and then nothing changes any more.
     pub fn step(&mut self) -> bool {
-        let Self {
-            scene,
-            robots,
-            trace,
-            medium,
-            visible,
-            known,
-            seen,
-            now,
-        } = self;
         // In the last step robots look, and nobody flies on.
-        if trace.seen.len() > *now as usize {
+        if self.trace.seen.len() > self.now as usize {
             return false;
         }
-        let scenario = trace.scenario.clone();
-        let mut views = Vec::new();
-        for (robot, way) in robots.iter_mut().zip(&trace.ways) {
-            let at = *way.last().expect("it starts somewhere");
-            let view = look(scene, at, scenario.range);
-            for &(voxel, occupied) in &view {
-                if known.insert(voxel) {
-                    trace.found.push((*now, voxel, occupied));
-                    *seen += u32::from(visible.contains(&voxel));
-                }
-            }
-            robot.observe(at, &view);
-            views.push(view);
-        }
-        let mut sent = vec![Sent::default(); robots.len()];
-        match scenario.conditions.medium {
-            MediumKind::Ideal => medium.share_maps(robots, &views),
-            MediumKind::Radio => {
-                let frames = usize::from(scenario.conditions.byte_budget) / MAX_LEN;
-                // One is left for after the flight.
-                for (i, sent) in sent.iter_mut().enumerate() {
-                    medium.transmit(robots, i, frames.saturating_sub(1).max(1), sent);
-                }
+        self.meet_fate();
+        self.sense();
+        self.share();
+        self.trace.seen.push(self.seen);
+        for i in 0..self.robots.len() {
+            if self.robots[i].alive {
+                self.act(i);
             }
         }
-        trace.seen.push(*seen);
-        let mut going = false;
-        let mut next = Vec::new();
-        for (i, sent) in sent.iter_mut().enumerate() {
-            let at = *trace.ways[i].last().expect("as above");
-            let action = robots[i].tick();
-            let work = robots[i].work();
-            let (to, deed, stop) = match action {
-                // The run is given up before it flies.
-                Action::Move(_) if *now >= scenario.conditions.max_ticks => {
-                    (at, Deed::Hovered, None)
-                }
-                Action::Move(to) => (to, Deed::Flew, None),
-                Action::Wait => (at, Deed::Hovered, None),
-                Action::Stop(stop) => (at, Deed::Stopped(stop.into()), Some(stop)),
-            };
-            going |= stop.is_none();
-            trace.stops[i] = stop;
-            let is_allowed = scene.is_pose(to) && at.distance_squared(to) <= 1;
-            trace.violations += u32::from(!is_allowed);
-            next.push(to);
-            match scenario.conditions.medium {
-                MediumKind::Ideal => medium.share_status(robots, i),
-                MediumKind::Radio => medium.transmit(robots, i, 1, sent),
-            }
-            trace.records.push(Record {
-                tick: *now,
-                robot: i as u8,
-                at: to,
-                deed,
-                goal: robots[i].status().goal,
-                known: robots[i].volume().known_voxels(),
-                work,
-                sent: *sent,
-            });
-        }
-        trace.all_stopped = !going;
-        if !going || *now >= scenario.conditions.max_ticks {
+        let faults = &self.trace.scenario.conditions.faults;
+        let going = faults.still_to_come(self.now + 1)
+            || (self.robots.iter()).any(|robot| robot.alive && !robot.stopped);
+        self.trace.all_stopped = !going;
+        if !going || self.is_last() {
             return false;
         }
-        for (way, to) in trace.ways.iter_mut().zip(next) {
-            way.push(to);
+        for (robot, way) in self.robots.iter().zip(&mut self.trace.ways) {
+            way.push(robot.at);
         }
-        *now += 1;
+        self.now += 1;
         true
     }
-}
 
-/// What carries what robots tell each other.
-struct Medium {
-    loss: f64,
-    dice: Dice,
-    /// Where each robot stands that tells its map word by word.
-    turns: Vec<(TileIndex, u8)>,
-}
+    /// Whether the run is given up before anybody flies on.
+    fn is_last(&self) -> bool {
+        self.now >= self.trace.scenario.conditions.max_ticks
+    }
 
-impl Medium {
-    fn arrives(&mut self) -> bool {
-        !self.dice.happens(self.loss)
+    /// Deaths, arrivals and restarts of this step, and who goes on.
+    fn meet_fate(&mut self) {
+        let faults = &self.trace.scenario.conditions.faults;
+        for robot in &mut self.robots {
+            robot.alive = faults.is_alive(robot.id, self.now);
+            robot.sent = Sent::default();
+            if robot.alive && Faults::befalls(&faults.restarts, robot.id, self.now) {
+                let planner = planner(&self.scene, self.config, robot.id);
+                robot.planner = planner.expect("it was set up like this before");
+                robot.stopped = false;
+            }
+            if robot.alive && Faults::befalls(&faults.resumes, robot.id, self.now) {
+                robot.planner.resume();
+                robot.stopped = false;
+            }
+        }
+    }
+
+    fn sense(&mut self) {
+        for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
+            robot.view = look(&self.scene, robot.at, self.config.range);
+            for &(voxel, occupied) in &robot.view {
+                if self.known.insert(voxel) {
+                    self.trace.found.push((self.now, voxel, occupied));
+                    self.seen += u32::from(self.visible.contains(&voxel));
+                }
+            }
+            robot.planner.observe(robot.at, &robot.view);
+        }
+    }
+
+    /// What everybody has to say to everybody, before anybody decides.
+    fn share(&mut self) {
+        let conditions = &self.trace.scenario.conditions;
+        match conditions.medium {
+            MediumKind::Ideal => self.share_maps(),
+            MediumKind::Radio => {
+                self.radio.deliver(self.now, &mut self.robots);
+                let frames = usize::from(conditions.byte_budget) / MAX_LEN;
+                // One is left for after the flight.
+                for i in 0..self.robots.len() {
+                    self.transmit(i, frames.saturating_sub(1).max(1));
+                }
+                self.radio.forge(self.now, &mut self.robots);
+            }
+        }
     }
 
     /// Everything that each robot sees to everybody, however much it is, and a few words
     /// of its map.
-    fn share_maps(&mut self, robots: &mut [Box<Robot>], views: &[Vec<(Voxel, bool)>]) {
-        let mut messages: Vec<Vec<VoxelPatch>> = Vec::new();
-        for ((robot, view), turn) in robots.iter().zip(views).zip(&mut self.turns) {
-            let tile = |voxel: Voxel| TileIndex::of(voxel.cell()).expect("inside").0;
-            let mut touched: BTreeSet<(TileIndex, u8)> = view
-                .iter()
-                .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
-                .collect();
-            for _ in 0..IN_TURN {
-                touched.insert(*turn);
-                *turn = robot.volume().after(turn.0, turn.1);
-            }
-            let patches = touched
-                .into_iter()
-                .map(|(tile, z)| robot.volume().patch(tile, z));
-            messages.push(patches.collect());
-        }
+    fn share_maps(&mut self) {
+        let news = |robot: &mut Robot| robot.alive.then(|| robot.news());
+        let messages: Vec<_> = self.robots.iter_mut().map(news).collect();
         for (from, message) in messages.iter().enumerate() {
-            for (to, robot) in robots.iter_mut().enumerate() {
-                if to != from && self.arrives() {
-                    for patch in message {
-                        robot.merge(patch);
+            let Some(patches) = message else { continue };
+            for to in 0..self.robots.len() {
+                if self.hears(from, to) {
+                    for patch in patches {
+                        self.robots[to].planner.merge(patch);
                     }
                 }
             }
         }
     }
 
-    /// Where robot `from` is and goes, to everybody.
-    fn share_status(&mut self, robots: &mut [Box<Robot>], from: usize) {
-        let status = robots[from].status();
-        for (to, robot) in robots.iter_mut().enumerate() {
-            if to != from && self.arrives() {
-                robot.hear(RobotId(from as u8), status);
-            }
-        }
+    /// Robot `i` sends as many frames as its budget allows, at most `most`.
+    fn transmit(&mut self, i: usize, most: usize) {
+        self.radio.transmit(self.now, &mut self.robots, i, most);
+        self.radio.deliver(self.now, &mut self.robots);
     }
 
-    /// Robot `from` sends as many frames as its budget allows, at most `most`.
-    fn transmit(&mut self, robots: &mut [Box<Robot>], from: usize, most: usize, sent: &mut Sent) {
-        let mut frame = [0; MAX_LEN];
-        for _ in 0..most {
-            let Some(length) = robots[from].transmit(&mut frame) else {
-                break;
-            };
-            sent.frames += 1;
-            sent.bytes += length as u32;
-            for (to, robot) in robots.iter_mut().enumerate() {
-                if to != from && self.arrives() {
-                    let heard = robot.receive(&frame[..length]);
-                    heard.expect("robots understand each other");
+    /// Whether robot `to` hears now what robot `from` says, without a frame.
+    fn hears(&mut self, from: usize, to: usize) -> bool {
+        let end = |robot: &Robot| (robot.id, robot.at);
+        let (from, to) = (&self.robots[from], &self.robots[to]);
+        from.id != to.id
+            && to.alive
+            && self.radio.is_open(self.now)
+            && self.radio.air.carries(self.now, end(from), end(to))
+    }
+
+    /// Robot `i` decides, flies and tells the others where it is and goes.
+    fn act(&mut self, i: usize) {
+        let at = self.robots[i].at;
+        let (to, deed, stop) = match self.robots[i].planner.tick() {
+            Action::Move(_) if self.is_last() => (at, Deed::Hovered, None),
+            Action::Move(to) => (to, Deed::Flew, None),
+            Action::Wait => (at, Deed::Hovered, None),
+            Action::Stop(stop) => (at, Deed::Stopped(stop.into()), Some(stop)),
+        };
+        let work = self.robots[i].planner.work();
+        let is_allowed = self.scene.is_pose(to) && at.distance_squared(to) <= 1;
+        self.trace.violations += u32::from(!is_allowed);
+        self.trace.stops[i] = stop;
+        self.robots[i].stopped = stop.is_some();
+        let status = self.robots[i].planner.status();
+        match self.trace.scenario.conditions.medium {
+            MediumKind::Radio => self.transmit(i, 1),
+            MediumKind::Ideal => {
+                for other in 0..self.robots.len() {
+                    if self.hears(i, other) {
+                        let id = self.robots[i].id;
+                        self.robots[other].planner.hear(id, status);
+                    }
                 }
             }
         }
+        let robot = &mut self.robots[i];
+        robot.at = to;
+        self.trace.records.push(Record {
+            tick: self.now,
+            robot: robot.id.0,
+            at: to,
+            deed,
+            goal: status.goal,
+            known: robot.planner.volume().known_voxels(),
+            work,
+            sent: robot.sent,
+        });
     }
+}
+
+fn planner(scene: &Scene, config: Config, id: RobotId) -> Result<Box<Planner>, ExtentError> {
+    Planner::new(config, id, scene.extent(), scene.levels()).map(Box::new)
 }

@@ -62,6 +62,26 @@ impl Faults {
         events.contains(&Event { robot, tick })
     }
 
+    /// Whether `robot` lives in `tick`. Of what befalls it in one tick, death comes first.
+    pub(crate) fn is_alive(&self, robot: RobotId, tick: u32) -> bool {
+        let of = |events: &[Event], until: u32| -> Option<u32> {
+            let befallen = events
+                .iter()
+                .filter(|of| of.robot == robot && of.tick <= until);
+            befallen.map(|of| of.tick).max()
+        };
+        let is_there = |tick| !self.comes_late(robot) || of(&self.arrivals, tick).is_some();
+        let death = of(&self.deaths, tick);
+        let restart = of(&self.restarts, tick).filter(|&restart| is_there(restart));
+        let life = of(&self.arrivals, tick).max(restart);
+        match (life, death) {
+            (Some(life), Some(death)) => life >= death,
+            (Some(_), None) => true,
+            (None, Some(_)) => false,
+            (None, None) => is_there(tick),
+        }
+    }
+
     /// Whether `robot` is not there from the beginning.
     pub(crate) fn comes_late(&self, robot: RobotId) -> bool {
         self.arrivals.iter().any(|of| of.robot == robot)

@@ -146,26 +146,16 @@ impl Conditions {
         used.map(|(option, _)| option)
     }
 
-    /// Nothing that fleets do not have that fly over or in `world`, by the options' names.
+    /// Nothing that names cells or poses of a grid, which `world` does not have.
     fn check_flown(&self, world: &'static str) -> Result<(), ScenarioError> {
-        let Self { faults, air, .. } = self;
-        let absent = [
-            ("sync", self.sync != 1),
-            ("radio-range", air.reach != Reach::Everywhere),
-            ("partition", !air.partitions.is_empty()),
-            ("duplicate", air.duplication > 0.0),
-            ("delay", air.delay > 0),
-            ("corrupt", air.corruption > 0.0),
-            ("forge", air.forger.is_some()),
-            ("late", !faults.arrivals.is_empty()),
-            ("restart", !faults.restarts.is_empty()),
-            ("resume", !faults.resumes.is_empty()),
+        let faults = &self.faults;
+        let of_grids = [
             ("close", !faults.closures.is_empty()),
             ("blind", !faults.blind.is_empty()),
             ("sensor-fails", !faults.sensor_failures.is_empty()),
             ("pose-lost", !faults.lost_poses.is_empty()),
         ];
-        match absent.into_iter().find(|(_, is_used)| *is_used) {
+        match of_grids.into_iter().find(|(_, is_used)| *is_used) {
             Some((option, _)) => Err(ScenarioError::NotHere { option, world }),
             None => Ok(()),
         }

@@ -14,8 +14,8 @@ use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point, Stop};
 use serde::{Deserialize, Serialize};
 
-use crate::fleet::Sent;
 use crate::record::{self, Deed, Format};
+use crate::robot::Sent;
 use crate::scenario::Conditions;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::terrain::Terrain;

@@ -3,8 +3,8 @@
 use planner_core::Cell;
 
 use super::{LAST_ACT, NOWHERE, Record, Row};
-use crate::fleet::{Deed, Sent};
 use crate::record::{Objection, Order, Reason, wrong};
+use crate::robot::{Deed, Sent};
 use crate::scenario::grid::Scenario;
 
 /// Most ticks without a record, all together: every robot is dead or still to come.

@@ -1,7 +1,7 @@
 //! The robot that was clicked: its state, its last decisions, its cost.
 
 use egui::{Grid, RichText, Ui};
-use host_sim::fleet::Deed;
+use host_sim::robot::Deed;
 use host_sim::sensor::ALL_AROUND;
 use planner_core::Wait;
 

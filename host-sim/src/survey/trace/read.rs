@@ -4,12 +4,11 @@
 use std::io::BufRead;
 
 use planner_core::surface::Height;
-use planner_core::{Cell, Extent, Point};
+use planner_core::{Cell, Extent, Point, RobotId};
 
 use super::{FORMAT, Header, Heights, NOWHERE, Record, Row, Trace};
-use crate::fleet::Sent;
 use crate::record::{self, Deed, Objection, Order, Reason, TraceError, wrong};
-use crate::scenario::Event;
+use crate::robot::Sent;
 use crate::scenario::heights::Scenario;
 use crate::terrain::{LARGEST, Terrain, look};
 
@@ -71,6 +70,8 @@ struct Replay {
     known: Vec<bool>,
     at: Vec<Point>,
     has_stopped: Vec<bool>,
+    /// Who has come: from the beginning, or by a record.
+    is_there: Vec<bool>,
 }
 
 impl Replay {
@@ -91,6 +92,10 @@ impl Replay {
             known: vec![false; terrain.extent().cells() as usize],
             at: starts.clone(),
             has_stopped: vec![false; robots],
+            is_there: (0..=u8::MAX)
+                .take(robots)
+                .map(|id| !scenario.conditions.faults.comes_late(RobotId(id)))
+                .collect(),
             trace: Trace::new(&terrain, &scenario, starts),
         };
         match replay.at.iter().position(|at| !replay.is_in_box(*at)) {
@@ -151,13 +156,9 @@ impl Replay {
                 bytes: row.bytes,
             },
         };
-        let robot = usize::from(record.robot);
-        let dies = |of: &&Event| of.robot.0 == record.robot && of.tick <= record.tick;
-        if let Some(death) = scenario.conditions.faults.deaths.iter().find(dies) {
-            let expected = format!(
-                "a robot that lives; robot {robot} dies before step {}",
-                death.tick
-            );
+        let faults = &scenario.conditions.faults;
+        if !faults.is_alive(RobotId(record.robot), record.tick) {
+            let expected = format!("a robot that lives; robot {} does not", record.robot);
             return Err(wrong(expected, format!("tick {}", record.tick)));
         }
         if !self.is_in_box(record.at) {
@@ -189,6 +190,7 @@ impl Replay {
         self.look(tick, records.iter().map(|it| usize::from(it.robot)));
         for record in records {
             let robot = usize::from(record.robot);
+            self.is_there[robot] = true;
             let from = std::mem::replace(&mut self.at[robot], record.at);
             if record.deed == Deed::Flew {
                 let Trace {
@@ -232,11 +234,9 @@ impl Replay {
 
     /// The robots that live in this step.
     fn alive(&self, tick: u32) -> impl Iterator<Item = usize> + '_ {
-        let deaths = &self.trace.scenario.conditions.faults.deaths;
-        let lives = move |robot: &usize| {
-            !deaths
-                .iter()
-                .any(|of| usize::from(of.robot.0) == *robot && of.tick <= tick)
+        let faults = &self.trace.scenario.conditions.faults;
+        let lives = move |&robot: &usize| {
+            self.is_there[robot] && faults.is_alive(RobotId(robot as u8), tick)
         };
         (0..self.at.len()).filter(lives)
     }
@@ -270,8 +270,8 @@ mod tests {
 
     use super::*;
     use crate::run::heights::run;
-    use crate::scenario::MediumKind;
     use crate::scenario::heights::Planner;
+    use crate::scenario::{Event, MediumKind};
 
     /// The first version had two reasons the other way round.
     #[test]
@@ -399,7 +399,7 @@ mod tests {
         dead.scenario.conditions.faults.deaths[0].tick = dead.records[last].tick;
         let error = Trace::read(text(&dead).as_bytes()).unwrap_err().to_string();
         assert!(error.contains(&format!("line {}", last + 3)), "{error}");
-        assert!(error.contains("robot 1 dies"), "{error}");
+        assert!(error.contains("robot 1 does not"), "{error}");
     }
 
     #[test]

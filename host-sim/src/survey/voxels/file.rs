@@ -13,8 +13,8 @@ use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
 use super::VoxelTrace;
-use crate::fleet::Sent;
 use crate::record::{self, Deed, Format, Objection, Order, TraceError, wrong};
+use crate::robot::Sent;
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
 use crate::scene::{LARGEST, LEVELS, Scene, look, visible};

@@ -18,11 +18,11 @@ mod wire;
 
 pub use message::{
     Answer, Cost, FrameBytes, Hello, Memory, PlannerConfig, Reply, Request, Rows, STAGED, State,
-    Welcome, fingerprint,
+    Welcome, grid_hash,
 };
 pub use survey::{
     LOOK, PatchRecord, SEEN, Seen, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
-    imprint, relief, told,
+    frame_hash, patches_hash, surface_hash,
 };
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 

@@ -124,7 +124,7 @@ pub struct State {
     pub status: Status,
     /// Work of its last tick.
     pub work: u32,
-    /// [`fingerprint`] of its map.
+    /// [`grid_hash`] of its map.
     pub map: u32,
     /// The tile that the robot stands on.
     pub here: TileRecord,
@@ -198,7 +198,7 @@ pub struct Memory {
 
 /// A number that tells maps apart: FNV-1a over the words of all tiles, folded.
 /// Two maps of different compiled sizes with the same cells have the same one.
-pub fn fingerprint<const TW: usize, const TH: usize>(map: &Map<TW, TH>) -> u32 {
+pub fn grid_hash<const TW: usize, const TH: usize>(map: &Map<TW, TH>) -> u32 {
     let (columns, rows) = map.tile_extent();
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for y in 0..rows {

@@ -83,7 +83,7 @@ pub type SurveyAnswer = Answer<Status<Point, Cell>, SurveyReply>;
 pub enum SurveyReply {
     /// Nothing to say.
     Done,
-    /// [`told`] of what the robot would tell the others now.
+    /// [`patches_hash`] of what the robot would tell the others now.
     Told(u32),
     /// What was decided, and by what.
     Decided {
@@ -97,10 +97,10 @@ pub enum SurveyReply {
         gain: f32,
         /// The reward so far.
         reward: f32,
-        /// [`relief`] of the map.
+        /// [`surface_hash`] of the map.
         map: u32,
     },
-    /// [`imprint`] of the frame written, if there was one.
+    /// [`frame_hash`] of the frame written, if there was one.
     Sent(Option<u32>),
     /// What a frame brought.
     Heard(Result<u32, FrameError>),
@@ -164,7 +164,7 @@ fn heights_of(patch: &Patch) -> impl Iterator<Item = u8> {
 
 /// A number that tells maps apart. Two maps of different compiled sizes with the same
 /// columns have the same one.
-pub fn relief<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>) -> u32 {
+pub fn surface_hash<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>) -> u32 {
     let known = surface
         .tiles()
         .filter(|&tile| surface.known(tile) != 0)
@@ -173,12 +173,12 @@ pub fn relief<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>) -> u3
 }
 
 /// A number that tells apart what robots would tell.
-pub fn told<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> u32 {
+pub fn patches_hash<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> u32 {
     hash(knowledge.patches())
 }
 
 /// A number that tells frames apart.
-pub fn imprint(frame: &[u8]) -> u32 {
+pub fn frame_hash(frame: &[u8]) -> u32 {
     folded(
         frame
             .iter()

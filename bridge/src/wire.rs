@@ -122,7 +122,7 @@ mod tests {
     use planner_core::{Cell, Extent, Map, Motion, Sighting};
 
     use super::*;
-    use crate::{Request, fingerprint};
+    use crate::{Request, grid_hash};
 
     /// Sends a message in pieces of `piece` bytes.
     fn deliver<'a>(
@@ -181,13 +181,13 @@ mod tests {
         let extent = Extent::new(19, 30);
         let mut small = Map::<4, 4>::new(extent).unwrap();
         let mut large = Map::<16, 16>::new(extent).unwrap();
-        let mut seen = std::collections::HashSet::from([fingerprint(&small)]);
+        let mut seen = std::collections::HashSet::from([grid_hash(&small)]);
         for (x, y) in (0..19).flat_map(|x| (0..30).map(move |y| (x, y))) {
             let look = Sighting::new(Cell::new(x, y));
             small.observe(&look);
             large.observe(&look);
-            assert_eq!(fingerprint(&small), fingerprint(&large));
-            assert!(seen.insert(fingerprint(&small)), "the same after {x},{y}");
+            assert_eq!(grid_hash(&small), grid_hash(&large));
+            assert!(seen.insert(grid_hash(&small)), "the same after {x},{y}");
         }
     }
 }

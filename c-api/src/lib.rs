@@ -13,7 +13,7 @@ mod types;
 use planner_core::explorer::{Config, Explorer};
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Beam, RangeScan, ScanError};
-use planner_core::{Cell, Extent, Motion, Planner as _, RobotId, Sighting};
+use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
 pub use place::{PLANNER_WORDS, Planner};
 pub use types::{
@@ -174,13 +174,9 @@ pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
 /// it could reach within its map; otherwise it gave up.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
-    const COMPLETE: [PlannerStop; 4] = [
-        PlannerStop::Complete,
-        PlannerStop::Enclosed,
-        PlannerStop::AtEdge,
-        PlannerStop::OutOfReach,
-    ];
-    COMPLETE.iter().any(|&reason| reason as u8 == stop)
+    let code = stop.checked_sub(1);
+    code.and_then(Reason::from_code)
+        .is_some_and(Reason::is_complete)
 }
 
 /// Says how the step of the last move went: [`PLANNER_MOVED`],

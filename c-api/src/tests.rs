@@ -339,7 +339,11 @@ fn stops_have_the_codes_of_traces_and_one_more() {
     for (stop, code) in stops.into_iter().zip(1..) {
         let told = PlannerAction::new(Action::Stop(stop), None);
         assert_eq!(told.kind, PlannerActionKind::Stop);
-        assert_eq!((told.stop as u8, stop.code() + 1), (code, code), "{stop}");
+        assert_eq!(
+            (told.stop as u8, stop.reason().code() + 1),
+            (code, code),
+            "{stop}"
+        );
         assert_eq!(
             planner_stop_is_complete(told.stop as u8),
             stop.is_complete(),

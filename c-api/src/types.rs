@@ -2,7 +2,7 @@
 
 use planner_core::radio::FrameError;
 use planner_core::sight::Pose;
-use planner_core::{Action, Direction, Stop, Wait};
+use planner_core::{Action, Direction, Reason, Wait};
 
 /// What came of a call.
 #[repr(C)]
@@ -194,18 +194,18 @@ pub enum PlannerStop {
     Held = 9,
 }
 
-impl<P> From<&Stop<P>> for PlannerStop {
-    fn from(stop: &Stop<P>) -> Self {
-        match stop {
-            Stop::Complete => Self::Complete,
-            Stop::Enclosed { .. } => Self::Enclosed,
-            Stop::Blocked { .. } => Self::Blocked,
-            Stop::BackAtStart { .. } => Self::BackAtStart,
-            Stop::NoTrace { .. } => Self::NoTrace,
-            Stop::AtEdge { .. } => Self::AtEdge,
-            Stop::OutOfReach { .. } => Self::OutOfReach,
-            Stop::Unseen { .. } => Self::Unseen,
-            Stop::Held { .. } => Self::Held,
+impl From<Reason> for PlannerStop {
+    fn from(reason: Reason) -> Self {
+        match reason {
+            Reason::Complete => Self::Complete,
+            Reason::Enclosed => Self::Enclosed,
+            Reason::Blocked => Self::Blocked,
+            Reason::BackAtStart => Self::BackAtStart,
+            Reason::NoTrace => Self::NoTrace,
+            Reason::AtEdge => Self::AtEdge,
+            Reason::OutOfReach => Self::OutOfReach,
+            Reason::Unseen => Self::Unseen,
+            Reason::Held => Self::Held,
         }
     }
 }
@@ -315,7 +315,7 @@ impl PlannerAction {
             }
             Action::Stop(stop) => {
                 told.kind = PlannerActionKind::Stop;
-                told.stop = (&stop).into();
+                told.stop = stop.reason().into();
                 told.frontiers = stop.left();
                 if let Some(at) = stop.place() {
                     told.at = PlannerCell { x: at.x, y: at.y };

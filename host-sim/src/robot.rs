@@ -1,8 +1,6 @@
 //! A robot of a grid, and what became of its decisions.
 
-use planner_core::{AnyPlanner, Cell, Direction, RobotId, Stop};
-
-use crate::record::Reason;
+use planner_core::{AnyPlanner, Cell, Direction, Reason, RobotId, Stop};
 
 /// A robot: a planner and the body that it moves.
 pub struct Robot<const TW: usize, const TH: usize> {
@@ -96,7 +94,7 @@ impl Deed {
             Self::Yielded => Deed::Yielded,
             Self::Waited => Deed::Waited,
             Self::Looked(to) => Deed::Looked(to),
-            Self::Stopped(stop) => Deed::Stopped(stop.into()),
+            Self::Stopped(stop) => Deed::Stopped(stop.reason()),
         }
     }
 }

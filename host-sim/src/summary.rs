@@ -156,7 +156,7 @@ impl RobotSummary {
             work: robot.work,
             frames_sent: robot.sent.frames,
             bytes_sent: robot.sent.bytes,
-            stop: robot.stop.map(|stop| stop.name()),
+            stop: robot.stop.map(|stop| stop.reason().name()),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             alive: robot.alive,
             hearsay: robot.hearsay,

@@ -10,9 +10,9 @@
 mod check;
 mod file;
 
-use planner_core::{Cell, Direction};
+use planner_core::{Cell, Direction, Reason};
 
-use crate::record::{self, Reason};
+use crate::record;
 use crate::robot::{Deed, Robot, Sent, Step};
 use crate::scenario::grid::Scenario;
 
@@ -86,7 +86,7 @@ impl Deed<Reason> {
             Self::Waited => WAITED,
             Self::Yielded => YIELDED,
             Self::Looked(to) => LOOKED + to as u8,
-            Self::Stopped(reason) => reason.action(),
+            Self::Stopped(reason) => record::action_of(reason),
         }
     }
 
@@ -100,7 +100,7 @@ impl Deed<Reason> {
             WAITED => Self::Waited,
             YIELDED => Self::Yielded,
             LOOKED..=LAST_ACT => Self::Looked(to(LOOKED)),
-            _ => Self::Stopped(Reason::of_action(action)?),
+            _ => Self::Stopped(record::reason_of(action)?),
         })
     }
 }

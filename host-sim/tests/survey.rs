@@ -1,6 +1,5 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
-use host_sim::record::Reason;
 use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -11,7 +10,7 @@ use host_sim::scene::octree::OcTree;
 use host_sim::survey::{Deed, octree};
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
-use planner_core::{Cell, Direction, Extent, Point};
+use planner_core::{Cell, Direction, Extent, Point, Reason};
 use proptest::prelude::*;
 
 const ALL: [Planner; 6] = [

@@ -2,9 +2,8 @@
 
 use std::collections::VecDeque;
 
-use host_sim::record::Reason;
 use host_sim::robot::Deed;
-use planner_core::{Cell, Direction};
+use planner_core::{Cell, Direction, Reason};
 
 use crate::watch::Watch;
 

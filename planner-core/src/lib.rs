@@ -32,6 +32,6 @@ pub use cell::{Cell, Direction, Extent, ExtentError};
 pub use map::{Learnt, Map};
 pub use planner::{AnyPlanner, Contact, Inspect, Planner};
 pub use point::Point;
-pub use robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
+pub use robot::{Action, Activity, Motion, Reason, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;
 pub use tile::TileSet;

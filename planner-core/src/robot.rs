@@ -97,43 +97,24 @@ impl<P> Stop<P> {
         }
     }
 
-    /// Whether everything that the robot could reach within its map is known to it.
+    /// The reason without the numbers and places that it names.
+    pub const fn reason(&self) -> Reason {
+        match self {
+            Self::Complete => Reason::Complete,
+            Self::Enclosed { .. } => Reason::Enclosed,
+            Self::Blocked { .. } => Reason::Blocked,
+            Self::BackAtStart { .. } => Reason::BackAtStart,
+            Self::NoTrace { .. } => Reason::NoTrace,
+            Self::AtEdge { .. } => Reason::AtEdge,
+            Self::OutOfReach { .. } => Reason::OutOfReach,
+            Self::Unseen { .. } => Reason::Unseen,
+            Self::Held { .. } => Reason::Held,
+        }
+    }
+
+    /// As [`Reason::is_complete`].
     pub const fn is_complete(&self) -> bool {
-        matches!(
-            self,
-            Self::Complete | Self::Enclosed { .. } | Self::AtEdge { .. } | Self::OutOfReach { .. }
-        )
-    }
-
-    /// The reason's number in traces and, plus one, in C. Numbers do not change; new
-    /// reasons get new ones.
-    pub const fn code(&self) -> u8 {
-        match self {
-            Self::Complete => 0,
-            Self::Enclosed { .. } => 1,
-            Self::Blocked { .. } => 2,
-            Self::BackAtStart { .. } => 3,
-            Self::NoTrace { .. } => 4,
-            Self::AtEdge { .. } => 5,
-            Self::OutOfReach { .. } => 6,
-            Self::Unseen { .. } => 7,
-            Self::Held { .. } => 8,
-        }
-    }
-
-    /// The reason's name in summaries, as one word.
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Enclosed { .. } => "enclosed",
-            Self::Blocked { .. } => "blocked",
-            Self::BackAtStart { .. } => "back-at-start",
-            Self::NoTrace { .. } => "no-trace",
-            Self::AtEdge { .. } => "at-edge",
-            Self::OutOfReach { .. } => "out-of-reach",
-            Self::Unseen { .. } => "unseen",
-            Self::Held { .. } => "held",
-        }
+        self.reason().is_complete()
     }
 
     /// Frontiers left, or on the map's edge.
@@ -203,6 +184,81 @@ impl<P: fmt::Display> fmt::Display for Stop<P> {
                 f,
                 "gave up: a robot stayed in the way at {at}, {frontiers} frontiers left"
             ),
+        }
+    }
+}
+
+/// A [`Stop`] without the numbers and places that it names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[repr(u8)]
+pub enum Reason {
+    /// [`Stop::Complete`]
+    Complete = 0,
+    /// [`Stop::Enclosed`]
+    Enclosed = 1,
+    /// [`Stop::Blocked`]
+    Blocked = 2,
+    /// [`Stop::BackAtStart`]
+    BackAtStart = 3,
+    /// [`Stop::NoTrace`]
+    NoTrace = 4,
+    /// [`Stop::AtEdge`]
+    AtEdge = 5,
+    /// [`Stop::OutOfReach`]
+    OutOfReach = 6,
+    /// [`Stop::Unseen`]
+    Unseen = 7,
+    /// [`Stop::Held`]
+    Held = 8,
+}
+
+impl Reason {
+    /// All of them, by their numbers.
+    pub const ALL: [Self; 9] = [
+        Self::Complete,
+        Self::Enclosed,
+        Self::Blocked,
+        Self::BackAtStart,
+        Self::NoTrace,
+        Self::AtEdge,
+        Self::OutOfReach,
+        Self::Unseen,
+        Self::Held,
+    ];
+
+    /// The reason's number in traces and, plus one, in C. Numbers do not change; new
+    /// reasons get new ones.
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The reason with this number.
+    pub fn from_code(code: u8) -> Option<Self> {
+        Self::ALL.get(usize::from(code)).copied()
+    }
+
+    /// Whether everything that the robot could reach within its map is known to it.
+    pub const fn is_complete(self) -> bool {
+        match self {
+            Self::Complete | Self::Enclosed | Self::AtEdge | Self::OutOfReach => true,
+            Self::Blocked | Self::BackAtStart | Self::NoTrace | Self::Unseen | Self::Held => false,
+        }
+    }
+
+    /// The name in summaries, as one word.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Enclosed => "enclosed",
+            Self::Blocked => "blocked",
+            Self::BackAtStart => "back-at-start",
+            Self::NoTrace => "no-trace",
+            Self::AtEdge => "at-edge",
+            Self::OutOfReach => "out-of-reach",
+            Self::Unseen => "unseen",
+            Self::Held => "held",
         }
     }
 }

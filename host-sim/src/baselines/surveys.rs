@@ -84,7 +84,7 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
             self.order
         };
         self.knowledge.set_goal(target);
-        self.knowledge.look_at(work);
+        self.knowledge.count_work(work);
         let Limits {
             range,
             min_altitude,

@@ -5,7 +5,7 @@
 //! [`Planner`](planner_core::Planner) whose verbs are messages to the chip, so
 //! that world, media, trace and pictures are those of any other run. It decides
 //! nothing. Media and traces look at a robot's map: the proxy keeps a copy, fed
-//! with what the chip is fed with, and in every tick the chip's fingerprint of its
+//! with what the chip is fed with, and in every tick the chip's grid_hash of its
 //! own map must be that of the copy. A `SurveyProxy` is the same for a robot that
 //! flies.
 

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use bridge::{Answer, Reply, Request, STAGED, State, fingerprint};
+use bridge::{Answer, Reply, Request, STAGED, State, grid_hash};
 use planner_core::map::Tile;
 use planner_core::radio::{
     Frame, FrameError, GridId, Heard, Hearsay, LinkConfig, MAX_LEN, TileRecord,
@@ -134,7 +134,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Proxy<TW, TH> {
 
     fn tick(&mut self) -> Action {
         let action = self.ask(Some(Call::Tick), &Request::Tick, held_by!(Action));
-        if self.dialogue.is_open() && self.state.map != fingerprint(&self.map) {
+        if self.dialogue.is_open() && self.state.map != grid_hash(&self.map) {
             self.dialogue.other_map();
         }
         action.unwrap_or(Action::Wait)

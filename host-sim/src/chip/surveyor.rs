@@ -4,8 +4,8 @@ use std::mem::discriminant;
 use std::rc::Rc;
 
 use bridge::{
-    LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig, imprint,
-    relief, told,
+    LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
+    frame_hash, patches_hash, surface_hash,
 };
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::surface::{Column, Patch};
@@ -111,7 +111,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
             let columns = columns.iter().copied().collect();
             self.tell(None, &SurveyRequest::Look(columns), SurveyReply::Done);
         }
-        let told = SurveyReply::Told(told(&self.mirror.0));
+        let told = SurveyReply::Told(patches_hash(&self.mirror.0));
         self.tell(Some(Call::Observe), &SurveyRequest::Observe(at), told);
     }
 
@@ -155,7 +155,7 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
         }
         let known = &self.mirror.0;
         let here = [known.gain(), known.reward()].map(f32::to_bits);
-        if here != [gain, reward].map(f32::to_bits) || map != relief(known.surface()) {
+        if here != [gain, reward].map(f32::to_bits) || map != surface_hash(known.surface()) {
             self.dialogue.other_map();
         }
         action
@@ -178,7 +178,9 @@ impl<const T: usize> Surveyor<T, T> for SurveyProxy<T> {
 
     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
         let length = self.mirror.transmit(buffer);
-        let sent = length.and_then(|length| buffer.get(..length)).map(imprint);
+        let sent = length
+            .and_then(|length| buffer.get(..length))
+            .map(frame_hash);
         let sent = SurveyReply::Sent(sent);
         self.tell(Some(Call::Transmit), &SurveyRequest::Transmit, sent);
         length

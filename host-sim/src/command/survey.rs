@@ -280,7 +280,7 @@ fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
         "work": own.clone().map(|record| u64::from(record.work)).sum::<u64>(),
         "frames_sent": own.clone().map(|record| record.sent.frames).sum::<u32>(),
         "bytes_sent": own.map(|record| record.sent.bytes).sum::<u32>(),
-        "stop": trace.stops[robot].map(|stop| stop.name()),
+        "stop": trace.stops[robot].map(|stop| stop.reason().name()),
         "stop_reason": trace.stops[robot].map(|stop| stop.to_string()),
     })
 }

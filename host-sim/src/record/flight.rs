@@ -1,6 +1,8 @@
 //! What became of a decision of a robot that flies.
 
-use super::Reason;
+use planner_core::Reason;
+
+use super::{action_of, last_action, reason_of};
 
 /// What a robot did in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +24,7 @@ impl Deed {
             Self::Flew => 0,
             Self::Refused => 1,
             Self::Hovered => 2,
-            Self::Stopped(reason) => reason.action(),
+            Self::Stopped(reason) => action_of(reason),
         }
     }
 
@@ -32,13 +34,13 @@ impl Deed {
             0 => Self::Flew,
             1 => Self::Refused,
             2 => Self::Hovered,
-            _ => Self::Stopped(Reason::of_action(action)?),
+            _ => Self::Stopped(reason_of(action)?),
         })
     }
 
     /// Which numbers there are, in words.
     pub(crate) fn actions() -> String {
-        let (first, last) = (Reason::Complete.action(), Reason::last_action());
+        let (first, last) = (action_of(Reason::Complete), last_action());
         format!("an action, 0 to 2 or {first} to {last}")
     }
 }

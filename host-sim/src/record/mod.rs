@@ -21,7 +21,7 @@ use sha2::{Digest, Sha256};
 
 pub use error::TraceError;
 pub use flight::Deed;
-pub use reason::Reason;
+pub(crate) use reason::{action_of, last_action, reason_of};
 
 use crate::excerpt::excerpt;
 

@@ -445,7 +445,7 @@ impl<const T: usize> Simulation<T> {
         let mut deed = match action {
             Action::Move(_) => Deed::Flew,
             Action::Wait => Deed::Hovered,
-            Action::Stop(reason) => Deed::Stopped(reason.into()),
+            Action::Stop(reason) => Deed::Stopped(reason.reason()),
         };
         if let Action::Move(to) = action {
             if self.collides(i, to) {

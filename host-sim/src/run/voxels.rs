@@ -331,7 +331,7 @@ impl Simulation {
             Action::Move(_) if self.is_last() => (at, Deed::Hovered, None),
             Action::Move(to) => (to, Deed::Flew, None),
             Action::Wait => (at, Deed::Hovered, None),
-            Action::Stop(stop) => (at, Deed::Stopped(stop.into()), Some(stop)),
+            Action::Stop(stop) => (at, Deed::Stopped(stop.reason()), Some(stop)),
         };
         let work = self.robots[i].planner.work();
         let is_allowed = self.scene.is_pose(to) && at.distance_squared(to) <= 1;

@@ -149,7 +149,7 @@ impl RobotSummary {
             work: trace.of(robot).map(|record| u64::from(record.work)).sum(),
             frames_sent: trace.of(robot).map(|record| record.sent.frames).sum(),
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
-            stop: stop.map(|stop| stop.name()),
+            stop: stop.map(|stop| stop.reason().name()),
             stop_reason: stop.map(|stop| stop.to_string()),
             alive: !deaths.iter().any(dies),
         }

@@ -1,9 +1,9 @@
 //! Whether records can be those of a run, before anything is drawn from them.
 
-use planner_core::Cell;
+use planner_core::{Cell, Reason};
 
 use super::{LAST_ACT, NOWHERE, Record, Row};
-use crate::record::{Objection, Order, Reason, wrong};
+use crate::record::{Objection, Order, action_of, last_action, wrong};
 use crate::robot::{Deed, Sent};
 use crate::scenario::grid::Scenario;
 
@@ -48,7 +48,7 @@ impl<'a> Checked<'a> {
         self.order.take(row.tick, row.robot)?;
         self.check_gap(next, row.tick)?;
         let Some(deed) = Deed::of_action(row.action) else {
-            let (first, last) = (Reason::Complete.action(), Reason::last_action());
+            let (first, last) = (action_of(Reason::Complete), last_action());
             let expected = format!("an action, 0 to {LAST_ACT} or {first} to {last}");
             return Err(wrong(expected, row.action));
         };

@@ -12,8 +12,8 @@
 //! Pockets, swaths and frontiers are heuristics, and what others say of themselves bends
 //! them: a robot that hears of rivals everywhere leaves everything to them. But all
 //! three serve only as long as something is gained: after [`PATIENCE`] steps in a row
-//! without it, or six near a goal, the rescue decides, which heeds nobody's claims.
-//! The six are forgotten with the next gain too. So the proof in `survey/rescue.rs`
+//! without it, or six near a goal, the recovery decides, which heeds nobody's claims.
+//! The six are forgotten with the next gain too. So the proof in `survey/recovery.rs`
 //! holds here, with its case 1.
 
 mod frontier;
@@ -27,7 +27,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Rescue, SetupError};
+use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Recovery, SetupError};
 use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
@@ -75,7 +75,7 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     knowledge: Knowledge<TW, TH>,
     rng: Rng,
     history: History<HISTORY>,
-    rescue: Rescue<TW, TH>,
+    recovery: Recovery<TW, TH>,
     /// The best tiles with frontiers of the last time, and where the look at all of
     /// them in turn stands.
     shortlist: Vec<TileIndex, SHORTLIST>,
@@ -100,7 +100,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
             history: History::new(),
-            rescue: Rescue::vacant(),
+            recovery: Recovery::vacant(),
             shortlist: Vec::new(),
             turn: TileIndex { x: 0, y: 0 },
             stuck: 0,
@@ -122,7 +122,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
-        self.rescue.reset();
+        self.recovery.reset();
         self.shortlist.clear();
         self.turn = TileIndex { x: 0, y: 0 };
         self.stuck = 0;
@@ -157,7 +157,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     fn fly_to(&mut self, goal: Option<Cell>) -> Option<Action<Point>> {
         self.knowledge.set_goal(goal);
-        self.knowledge.look_at(29);
+        self.knowledge.count_work(29);
         let goal = Point::over(goal?, 0.0);
         self.knowledge
             .step_towards(goal, self.cruise())
@@ -193,13 +193,13 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, T
         let gain = self.knowledge.gain();
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let needs_rescue = self.knowledge.idle() >= PATIENCE;
-        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
+        let needs_recovery = self.knowledge.idle() >= PATIENCE;
+        if self.knowledge.is_blocked() && (!needs_recovery || self.recovery.steps_aside()) {
             self.knowledge.take_refused();
             return self.sidestep();
         }
-        if self.is_stuck(gain) || needs_rescue {
-            return self.rescue.tick(&mut self.knowledge);
+        if self.is_stuck(gain) || needs_recovery {
+            return self.recovery.tick(&mut self.knowledge);
         }
         if let Some(pocket) = self.nearest_pocket()
             && let Some(action) = self.fly_to(Some(pocket))

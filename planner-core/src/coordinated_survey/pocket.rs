@@ -72,7 +72,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 }
             }
         }
-        self.knowledge.look_at(work);
+        self.knowledge.count_work(work);
         best.map(|(_, cell)| cell)
     }
 

@@ -83,14 +83,14 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
             }
         }
         let rows = u32::from(HEADINGS) * self.disc_rows();
-        self.knowledge.look_at(rows);
+        self.knowledge.count_work(rows);
         if !probes.iter().any(|probe| probe.value >= LEAST) {
             return None;
         }
         let to = match self.config.choice {
             Choice::Map => self.best_candidate(|robot, heading, _| {
                 let rows = robot.disc_rows();
-                robot.knowledge.look_at(rows);
+                robot.knowledge.count_work(rows);
                 robot.shown_along(vicinity, heading)
             }),
             Choice::Cubic => {
@@ -130,7 +130,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         for &(_, at) in &nearest {
             vicinity.leave_to(at, here);
         }
-        self.knowledge.look_at(512 + 64 * nearest.len() as u32);
+        self.knowledge.count_work(512 + 64 * nearest.len() as u32);
         vicinity
     }
 
@@ -147,7 +147,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         {
             let _ = rows.push(sample);
         }
-        self.knowledge.look_at((ROWS * ROWS) as u32);
+        self.knowledge.count_work((ROWS * ROWS) as u32);
         let frame = Frame {
             origin: self.knowledge.position(),
             scale: 1.0 / (step * math::sqrt(6.0)),
@@ -172,7 +172,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 best = Some((value, to));
             }
         }
-        self.knowledge.look_at(u32::from(CANDIDATES));
+        self.knowledge.count_work(u32::from(CANDIDATES));
         best.map(|(_, to)| to)
     }
 

@@ -90,6 +90,7 @@
 //! and each robot stops as shown above, with a reason that names the one in its way.
 
 mod aside;
+mod decide;
 mod far;
 mod lean;
 mod others;
@@ -101,11 +102,12 @@ mod window;
 
 pub use others::MAX_OTHERS;
 
-use aside::{Aside, Verdict};
+use aside::Aside;
+use decide::Near;
 use far::{FarSearch, Outcome};
 use others::Others;
 use surroundings::Surroundings;
-use window::{Aim, Candidate, NearSearch};
+use window::NearSearch;
 
 use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
@@ -113,7 +115,7 @@ use crate::map::{Learnt, Map};
 use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
-use crate::role::{self, Plan, Role};
+use crate::role::{self, Role};
 use crate::sight::Sighting;
 use crate::tile::{TileIndex, TileSet};
 use crate::zeroed::Maybe;
@@ -197,17 +199,6 @@ impl Default for Config {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// What the near decision has come to.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Near {
-    /// This robot goes to a frontier that it is nearest to.
-    Mine,
-    /// It had no plan, and goes to one that others are nearer to.
-    Theirs,
-    /// It goes on with what it had.
-    Nothing,
 }
 
 /// The complete planner with bounded work.
@@ -330,7 +321,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     fn learn(&mut self, learnt: Learnt) {
         if learnt.anything() {
-            self.role.used = 0;
+            self.role.changes = 0;
             self.role.lost = 0;
             self.looks = 0;
             self.far_is_doubtful = true;
@@ -348,21 +339,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         }
         self.learn(learnt);
         learnt
-    }
-
-    /// Goes on with the far search, with what the near decision has left of the slice.
-    fn search_far(&mut self) -> Outcome {
-        if self.far.is_idle() {
-            return Outcome::Searching;
-        }
-        let left = self.config.slice.saturating_sub(self.work + far::WAY_WORK);
-        let left = left.max(self.config.least_far());
-        self.far.advance(&self.around, left, &mut self.work)
-    }
-
-    fn start_sweep(&mut self) {
-        self.far_is_doubtful = false;
-        self.far.start_sweep(self.id, &self.others, &self.around);
     }
 
     /// Whether there is a plan that is worth following.
@@ -386,122 +362,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.role.lost = self.role.lost.saturating_add(1);
         }
         self.role.plan = None;
-    }
-
-    /// Decides among the frontiers nearby, and which far search is to run if none of
-    /// them is this robot's own. A robot without a plan then gets the best one of others.
-    fn decide_near(&mut self) -> Near {
-        let (now, id) = (self.around.now, self.id);
-        self.role.since = 0;
-        let knows_all = self.others.are_all_fresh(now);
-        let aim = Aim {
-            goal: self.last_goal,
-            hysteresis: self.config.hysteresis,
-            lean: (!knows_all).then_some(id),
-        };
-        let bonus = self.near.load(&self.around, &mut self.work);
-        if let Some(bonus) = &bonus {
-            let others = self.others.exploring();
-            let others = others.flat_map(|other| {
-                let is_lower = other.id < id;
-                other.whereabouts().map(move |cell| (cell, is_lower))
-            });
-            let mine = self
-                .near
-                .best(&self.around, &aim, bonus, others, &mut self.work);
-            match mine {
-                Some(candidate) if self.adopt_plan(candidate) => {
-                    self.far.cancel();
-                    return Near::Mine;
-                }
-                // Refused, and the way at hand goes on.
-                Some(_) if self.next_step().is_some() => {
-                    self.far.cancel();
-                    return Near::Mine;
-                }
-                _ => {}
-            }
-        }
-        let plan = self.role.plan.as_ref();
-        if self.far.is_idle() {
-            match plan.map(|plan| (plan.goal, plan.path.is_empty())) {
-                Some((goal, true)) => {
-                    self.far_is_doubtful = false;
-                    self.far.start_route(goal);
-                }
-                Some(_) if now < self.far_again => {}
-                _ => self.start_sweep(),
-            }
-        }
-        if let Some(bonus) = &bonus
-            && self.role.plan.is_none()
-        {
-            let others = core::iter::empty();
-            let theirs = self
-                .near
-                .best(&self.around, &aim, bonus, others, &mut self.work);
-            if let Some(candidate) = theirs {
-                self.adopt_plan(candidate);
-                return Near::Theirs;
-            }
-        }
-        Near::Nothing
-    }
-
-    /// The commitment rule: a longer plan than the one at hand costs a token, unless it
-    /// is the rest of the way at hand. Says whether the candidate is the plan now.
-    fn adopt_plan(&mut self, candidate: Candidate) -> bool {
-        self.role.since = 0;
-        if candidate.path.is_empty() {
-            return false;
-        }
-        if let Some(plan) = &self.role.plan
-            && candidate.length > plan.remaining
-            && !(plan.path.is_empty() && candidate.goal == plan.goal)
-        {
-            if self.role.used >= self.config.tokens {
-                return false;
-            }
-            self.role.used += 1;
-        }
-        let mut path = candidate.path;
-        path.truncate(self.config.way.max(1));
-        self.last_goal = Some(candidate.goal);
-        self.role.plan = Some(Plan {
-            goal: candidate.goal,
-            remaining: candidate.length,
-            path,
-        });
-        true
-    }
-
-    /// The far search met no frontier that is worth a look.
-    fn conclude(&mut self) -> Option<Stop> {
-        if self.far_is_doubtful {
-            return None;
-        }
-        let frontiers = self.around.map.frontiers();
-        let now = self.around.now;
-        match self
-            .around
-            .aside
-            .verdict(self.config.patience, frontiers, now)
-        {
-            Verdict::Nothing if self.link.hearsay().cells > 0 => Some(Stop::Enclosed { frontiers }),
-            Verdict::Nothing => Some(Stop::OutOfReach { frontiers }),
-            Verdict::Blocked(at) => Some(Stop::Blocked { frontiers, at }),
-            Verdict::Held(at) => Some(Stop::Held { frontiers, at }),
-            Verdict::Unseen(at) => Some(Stop::Unseen { frontiers, at }),
-            Verdict::Wait => {
-                self.waiting = Maybe::Just(Wait::Closed);
-                None
-            }
-            Verdict::Again => {
-                self.around.aside.next_round(self.config.patience, now);
-                self.role.lost = 0;
-                None
-            }
-        }
     }
 
     /// A robot on a frontier cell without a plan looks in every direction that shows
@@ -530,7 +390,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.around.aside.refuse(cell, by_robot, self.around.now);
         self.far_is_doubtful = true;
         self.role.plan = None;
-        self.role.used = 0;
+        self.role.changes = 0;
         self.holds = 0;
         self.far.cancel();
     }
@@ -610,8 +470,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         let now = self.around.now;
         if self.around.aside.tick(self.config.patience, now) {
-            self.far_is_doubtful = true;
-            self.role.lost = 0;
+            self.begin_round();
         }
         if !self.has_plan() {
             self.lose_plan();
@@ -668,7 +527,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn resume(&mut self) {
         self.role.stopped = Maybe::Nothing;
         self.role.plan = None;
-        self.role.used = 0;
+        self.role.changes = 0;
         self.role.lost = 0;
         self.around.aside.reset();
         self.looks = 0;

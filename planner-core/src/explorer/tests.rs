@@ -80,7 +80,7 @@ impl Ghost {
             1 => (goal.unwrap_or(here), goal),
             2 if is_turn => (goal.unwrap_or(far), None),
             2 => (far, None),
-            3 if robot.role.remaining() < 6 || robot.role.used >= robot.config.tokens => {
+            3 if robot.role.remaining() < 6 || robot.role.changes >= robot.config.tokens => {
                 (goal.unwrap_or(far), None)
             }
             3 => (far, Some(here)),

@@ -4,9 +4,9 @@
 //! The paper leaves points open: each reading taken here is named where it is applied.
 //!
 //! The paper's robots never stop. Here every step without gain counts, and after
-//! [`PATIENCE`] of them in a row the rescue decides until something is gained: why that
+//! [`PATIENCE`] of them in a row the recovery decides until something is gained: why that
 //! ends, whatever refuses a flight, whatever no look shows and whatever others say, is
-//! proved in `survey/rescue.rs`.
+//! proved in `survey/recovery.rs`.
 
 use crate::cao::{Degree, Frame, History, Model};
 use crate::cell::Extent;
@@ -14,7 +14,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Rescue, SetupError};
+use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Recovery, SetupError};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -63,7 +63,7 @@ pub struct Fcao<const TW: usize, const TH: usize, const H: usize = 8> {
     knowledge: Knowledge<TW, TH>,
     rng: Rng,
     history: History<H>,
-    rescue: Rescue<TW, TH>,
+    recovery: Recovery<TW, TH>,
 }
 
 impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
@@ -81,7 +81,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
             history: History::new(),
-            rescue: Rescue::vacant(),
+            recovery: Recovery::vacant(),
         }
     }
 
@@ -99,7 +99,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
-        self.rescue.reset();
+        self.recovery.reset();
         Ok(())
     }
 
@@ -141,7 +141,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     // reach, J less its mean.
     #[inline(never)] // what it keeps on the stack goes with it
     fn fit(&mut self, here: Point) -> Option<Model> {
-        self.knowledge.look_at((H * H) as u32);
+        self.knowledge.count_work((H * H) as u32);
         let reach = self.history.reach(here).max(self.config.limits.step);
         let frame = Frame {
             origin: here,
@@ -158,7 +158,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
 
     /// A random point of the sphere of one step [Renzaglia2019 eq. 6].
     fn candidate(&mut self, here: Point) -> Point {
-        self.knowledge.look_at(1);
+        self.knowledge.count_work(1);
         let (x, y, z) = self.rng.direction();
         let step = self.config.limits.step;
         here.offset(step * x, step * y, step * z)
@@ -192,14 +192,14 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
         if !self.knowledge.goal().is_some_and(is_frontier) {
             let (goal, work) = self.knowledge.closest_frontier();
             self.knowledge.set_goal(goal);
-            self.knowledge.look_at(work);
+            self.knowledge.count_work(work);
         }
         let Limits {
             range,
             min_altitude,
             ..
         } = self.config.limits;
-        self.knowledge.look_at(29);
+        self.knowledge.count_work(29);
         self.knowledge
             .goal()
             .and_then(|goal| {
@@ -224,13 +224,13 @@ impl<const TW: usize, const TH: usize, const H: usize> Pilot<TW, TH> for Fcao<TW
     fn decide(&mut self) -> Action<Point> {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let needs_rescue = self.knowledge.idle() >= PATIENCE;
-        if self.knowledge.is_blocked() && (!needs_rescue || self.rescue.steps_aside()) {
+        let needs_recovery = self.knowledge.idle() >= PATIENCE;
+        if self.knowledge.is_blocked() && (!needs_recovery || self.recovery.steps_aside()) {
             self.knowledge.take_refused();
             return self.wander();
         }
-        if needs_rescue {
-            return self.rescue.tick(&mut self.knowledge);
+        if needs_recovery {
+            return self.recovery.tick(&mut self.knowledge);
         }
         if self.knowledge.gain() > self.least_gain() {
             // Without a goal: the robot optimises locally.

@@ -37,7 +37,7 @@ pub struct Role {
     /// Steps since the last decision.
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
-    pub(crate) used: u8,
+    pub(crate) changes: u8,
     /// Plans that were worthless in the body that it got by an exchange, see [`exchange`].
     pub(crate) lost: u8,
     /// Whether it has reached its goal and has not decided since.
@@ -51,7 +51,7 @@ impl Role {
             rank,
             plan: None,
             since: 0,
-            used: 0,
+            changes: 0,
             lost: 0,
             has_arrived: false,
             stopped: Maybe::Nothing,
@@ -86,7 +86,7 @@ impl Role {
 
     /// Changes to a longer plan since the role last learnt anything.
     pub const fn changes(&self) -> u8 {
-        self.used
+        self.changes
     }
 
     /// The cell that the role goes to next from `here`.

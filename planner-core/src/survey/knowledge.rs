@@ -222,7 +222,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// Counts `number` more of them.
-    pub fn look_at(&mut self, number: u32) {
+    pub fn count_work(&mut self, number: u32) {
         self.work = self.work.saturating_add(number);
     }
 

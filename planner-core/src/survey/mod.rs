@@ -13,13 +13,13 @@ mod flight;
 mod knowledge;
 mod link;
 mod news;
-mod rescue;
+mod recovery;
 
 pub use knowledge::{Knowledge, SetupError};
 pub use news::MAX_RANGE;
-pub use rescue::PATIENCE;
+pub use recovery::PATIENCE;
 
-pub(crate) use rescue::Rescue;
+pub(crate) use recovery::Recovery;
 
 use crate::cell::Cell;
 use crate::point::Point;

@@ -414,6 +414,6 @@ fn a_robot_in_the_only_gap_is_named() {
         let stop = resume(&mut robot, &world);
         // As a robot that never heard of others.
         let (alone, _) = fly(&mut coordinated(), &world, &Vec::new(), u32::MAX, 30_000);
-        assert_eq!((stop.name(), stop.left()), (alone.name(), alone.left()));
+        assert_eq!((stop.reason(), stop.left()), (alone.reason(), alone.left()));
     }
 }

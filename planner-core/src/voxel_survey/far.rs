@@ -29,17 +29,17 @@ enum Stage {
 }
 
 /// A wave from the robot over all poses. A pose's distance is kept modulo 3, plus one, in
-/// two bits; 0 is dry.
+/// two bits; 0 is not reached.
 #[derive(Clone, Debug)]
 pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     stage: Stage,
     low: Layer<TW, TH, L>,
     high: Layer<TW, TH, L>,
-    /// The distance modulo 3 of what becomes wet.
+    /// The distance modulo 3 of what is reached next.
     layer: u8,
     /// Where the look at all words for it stands.
     cursor: (TileIndex, u8),
-    /// Whether anything has become wet in it.
+    /// Whether anything was reached in it.
     grows: bool,
     /// Poses of the word at the cursor that are left to rivals.
     passed: u64,
@@ -84,13 +84,13 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.low.set(from);
     }
 
-    /// Distance of `voxel` from the robot modulo 3, if it is wet.
+    /// Distance of `voxel` from the robot modulo 3, if it is reached.
     fn distance(&self, voxel: Voxel) -> Option<u8> {
         let sum = u8::from(self.low.get(voxel)) | u8::from(self.high.get(voxel)) << 1;
         sum.checked_sub(1)
     }
 
-    /// What is wet of a tile of a level at `distance` modulo 3.
+    /// What is reached of a tile of a level at `distance` modulo 3.
     fn at(&self, distance: u8, tile: TileIndex, z: u8) -> u64 {
         let (low, high) = (self.low.word(tile, z), self.high.word(tile, z));
         match distance {
@@ -101,15 +101,15 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
     }
 
     /// Lets the wave into the word at the cursor, but not into `closed` voxels.
-    fn wash(&mut self, volume: &Volume<TW, TH, L>, closed: &Layer<TW, TH, L>) {
+    fn spread_into_tile(&mut self, volume: &Volume<TW, TH, L>, closed: &Layer<TW, TH, L>) {
         let (tile, z) = self.cursor;
-        let wet = self.low.word(tile, z) | self.high.word(tile, z);
+        let reached = self.low.word(tile, z) | self.high.word(tile, z);
         let before = |tile, z| self.at((self.layer + 2) % 3, tile, z);
-        let reached = beside(tile, z, before);
-        if reached == 0 {
+        let next = beside(tile, z, before);
+        if next == 0 {
             return;
         }
-        let new = reached & !wet & volume.poses(tile, z) & !closed.word(tile, z);
+        let new = next & !reached & volume.poses(tile, z) & !closed.word(tile, z);
         if self.layer != 1 {
             self.low.add(tile, z, new);
         }
@@ -136,10 +136,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn spread(&mut self, known: u32) -> Found {
         while self.work < SLICE {
             self.work = self.work.saturating_add(1);
-            self.far.wash(&self.volume, &self.closed);
+            self.far.spread_into_tile(&self.volume, &self.closed);
             let (tile, z) = self.far.cursor;
-            let wet = self.far.at(self.far.layer, tile, z);
-            let open = wet & !self.done.word(tile, z) & !self.far.passed;
+            let reached = self.far.at(self.far.layer, tile, z);
+            let open = reached & !self.done.word(tile, z) & !self.far.passed;
             if open != 0 {
                 // The cursor stays until all of them are done or passed.
                 let pose = Voxel::of(tile, z, open.trailing_zeros());

@@ -35,7 +35,7 @@
 //! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
 //!    in a row it stops, as complete if no unknown voxel is beside a free one.
 //! 2. *Searching near* makes a pose done, or gives a way.
-//! 3. *Searching far*: the wave wets each pose once, passes over each pose left to a
+//! 3. *Searching far*: the wave reaches each pose once, passes over each pose left to a
 //!    rival once, and begins anew only after progress; the way back gets shorter.
 //! 4. *On the way* each step that is followed uses it up. One that is not closes a
 //!    voxel, at most N in a round.

@@ -2,7 +2,7 @@
 
 use bridge::{
     Answer, Cost, FrameBytes, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request,
-    Rows, State, VERSION, Welcome, fingerprint,
+    Rows, State, VERSION, Welcome, grid_hash,
 };
 use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
 use planner_core::ExtentError;
@@ -179,7 +179,7 @@ fn state(planner: &Robot) -> State {
     State {
         status,
         work: planner.work(),
-        map: fingerprint(planner.map()),
+        map: grid_hash(planner.map()),
         here: TileRecord {
             at,
             tile: planner.map().tile_inside(at),

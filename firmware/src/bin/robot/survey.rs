@@ -2,7 +2,7 @@
 
 use bridge::{
     Cost, Hello, Inbox, MAX_MESSAGE, Seen, SurveyAnswer, SurveyReply, SurveyRequest,
-    SurveyorConfig, VERSION, Welcome, imprint, relief, told,
+    SurveyorConfig, VERSION, Welcome, frame_hash, patches_hash, surface_hash,
 };
 use firmware::{CLOCK_HZ, Stopwatch};
 use planner_core::coordinated_survey::CoordinatedSurvey;
@@ -111,7 +111,7 @@ fn obey(
         SurveyRequest::Observe(at) => {
             let ((), cost) = stopwatch.measure(|| planner.observe(at, seen));
             seen.clear();
-            (SurveyReply::Told(told(planner.knowledge())), cost)
+            (SurveyReply::Told(patches_hash(planner.knowledge())), cost)
         }
         SurveyRequest::Hear(id, status) => done(stopwatch.measure(|| planner.hear(id, status))),
         SurveyRequest::Merge(record) => {
@@ -127,7 +127,7 @@ fn obey(
                 work: planner.work(),
                 gain: knowledge.gain(),
                 reward: knowledge.reward(),
-                map: relief(knowledge.surface()),
+                map: surface_hash(knowledge.surface()),
             };
             (decided, cost)
         }
@@ -137,7 +137,7 @@ fn obey(
             let mut frame = [0; MAX_LEN];
             let (length, cost) = stopwatch.measure(|| planner.transmit(&mut frame));
             let frame = length.and_then(|length| frame.get(..length));
-            (SurveyReply::Sent(frame.map(imprint)), cost)
+            (SurveyReply::Sent(frame.map(frame_hash)), cost)
         }
         SurveyRequest::Receive(bytes) => {
             let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));

@@ -4,10 +4,10 @@
 use std::io::BufRead;
 
 use planner_core::surface::Height;
-use planner_core::{Cell, Extent, Point, RobotId};
+use planner_core::{Cell, Extent, Point, Reason, RobotId};
 
 use super::{FORMAT, Header, Heights, NOWHERE, Record, Row, Trace};
-use crate::record::{self, Deed, Objection, Order, Reason, TraceError, wrong};
+use crate::record::{self, Deed, Objection, Order, TraceError, action_of, wrong};
 use crate::robot::Sent;
 use crate::scenario::heights::Scenario;
 use crate::terrain::{LARGEST, Terrain, look};
@@ -17,8 +17,8 @@ use crate::terrain::{LARGEST, Terrain, look};
 const MOST_STEPS: u32 = 10_000_000;
 
 /// Two actions that version 1 had the other way round.
-const UNSEEN: u8 = Reason::Unseen.action();
-const ENCLOSED: u8 = Reason::Enclosed.action();
+const UNSEEN: u8 = action_of(Reason::Unseen);
+const ENCLOSED: u8 = action_of(Reason::Enclosed);
 
 /// Rounding that a position may be beyond the box by.
 const TOLERANCE: f32 = 1e-3;
@@ -56,7 +56,7 @@ impl Trace {
                 continue;
             };
             let named = stops.get(usize::from(robot)).copied().flatten();
-            *stop = named.filter(|&stop| Reason::from(stop) == reason);
+            *stop = named.filter(|&stop| stop.reason() == reason);
         }
         trace.records = records;
         Ok(trace)
@@ -296,7 +296,7 @@ mod tests {
             at: Cell::new(2, 3),
         };
         for record in trace.records.iter_mut().rev().take(3) {
-            record.deed = Deed::Stopped(stop.into());
+            record.deed = Deed::Stopped(stop.reason());
             trace.stops[usize::from(record.robot)] = Some(stop);
         }
         let read = Trace::read(text(&trace).as_bytes()).unwrap();

@@ -10,7 +10,7 @@
 //! # What refuses
 //! A flight that is refused, by glass or by a robot that nobody heard of, is first taken
 //! for a passing robot's sake, and the planner steps aside. From the third refusal on the
-//! rescue is *careful*: it crosses one border between columns at a time, so that it learns
+//! recovery is *careful*: it crosses one border between columns at a time, so that it learns
 //! which column refuses. That column is *closed*, at all heights, and ways lead round
 //! it. A column that a robot heard of keeps from being entered is closed too, after a
 //! while. When no way to a frontier is left because of closed columns, all that cannot
@@ -25,15 +25,15 @@
 //! the robot stops. Nothing that other robots say of themselves has part in it: it only
 //! forbids flights, and each of the cases counts those.
 //! 1. *Planners.* A step without a new column has no gain, and a step with gain ends
-//!    the spell. So after [`PATIENCE`] steps every further one is the rescue's, but for
+//!    the spell. So after [`PATIENCE`] steps every further one is the recovery's, but for
 //!    those of case 2 and [`BUMPS`] steps aside.
 //! 2. *A sensor that shows nothing where it must*: the robot hovers, and stops after a
 //!    hundred such looks in a row. Any other look that shows something known brings it
 //!    back to case 3; looks that may show nothing are steps of case 3.
-//! 3. *The rescue.* A round is a search, a goal, its edges, the next goal. Each
+//! 3. *The recovery.* A round is a search, a goal, its edges, the next goal. Each
 //!    search looks at every tile once, so it ends; a goal that was looked over or
 //!    given up is not chosen again in the round. So there are at most F targets of 4
-//!    edges. One edge takes the wave of its way, which ends as it wets each column
+//!    edges. One edge takes the wave of its way, which ends as it reaches each column
 //!    once; flights, each of which lowers `patience`; and climbs, each of which lowers
 //!    it as well. `patience` is set when an edge, a climb, or a leg begins. A *leg* is
 //!    the flight to the next column of the way; an edge has at most N of them by count,
@@ -55,7 +55,7 @@ use crate::surface::Columns;
 use crate::tile::{TileIndex, Tiles, bits};
 use way::Way;
 
-/// Steps without gain after which the rescue begins.
+/// Steps without gain after which the recovery begins.
 pub const PATIENCE: u16 = 50;
 
 /// Height over the least altitude at which it flies.
@@ -70,7 +70,7 @@ const ROUNDS: u8 = 3;
 /// Steps of rest before the first of these; each time twice as many.
 const REST: u8 = 16;
 
-/// Refused flights after which the planner steps aside, before the rescue is careful.
+/// Refused flights after which the planner steps aside, before the recovery is careful.
 const BUMPS: u8 = 2;
 
 /// Steps in a round that the robot waits for robots in its way.
@@ -81,7 +81,7 @@ const TIME: u16 = 8;
 
 /// Which frontiers have been looked over since the map last grew, and the one that is.
 #[derive(Clone, Debug)]
-pub(crate) struct Rescue<const TW: usize, const TH: usize> {
+pub(crate) struct Recovery<const TW: usize, const TH: usize> {
     tried: Tiles<u64, TW, TH>,
     /// Columns that refused a flight in this round.
     closed: Tiles<u64, TW, TH>,
@@ -119,7 +119,7 @@ pub(crate) struct Rescue<const TW: usize, const TH: usize> {
     patience: u16,
 }
 
-impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
+impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// All zero, until [`reset`](Self::reset).
     pub(crate) const fn vacant() -> Self {
         Self {
@@ -194,7 +194,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         self.bumps <= BUMPS
     }
 
-    /// One step of the rescue.
+    /// One step of the recovery.
     ///
     /// Cost: 64 tiles while a goal is searched for, 1024 while the way to it is; every
     /// tile where a way turns out to be barred, or a round begins; and at most 32
@@ -273,7 +273,7 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
         place: Point,
     ) -> Option<Action<Point>> {
         let here = knowledge.position().cell();
-        knowledge.look_at(29);
+        knowledge.count_work(29);
         let is_straight = if self.careful {
             here == goal
         } else {
@@ -423,9 +423,9 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
     /// No way leads to the goal, nor to anything that is connected with it.
     fn give_up_all(&mut self) {
         let words = self.tried.values_mut().zip(self.barred.values_mut());
-        for ((tried, barred), wet) in words.zip(self.way.wet()) {
-            *barred |= wet & !*tried;
-            *tried |= wet;
+        for ((tried, barred), reached) in words.zip(self.way.reached()) {
+            *barred |= reached & !*tried;
+            *tried |= reached;
         }
         self.goal = None;
         self.is_barred = true;
@@ -472,12 +472,12 @@ impl<const TW: usize, const TH: usize> Rescue<TW, TH> {
             let tile = self.cursor;
             self.cursor = knowledge.surface().tile_after(tile);
             self.left -= 1;
-            knowledge.look_at(1);
+            knowledge.count_work(1);
             if knowledge.surface().frontiers_in(tile) == 0 {
                 continue;
             }
             let open = knowledge.surface().frontier_cells(tile) & !self.tried.word(tile);
-            knowledge.look_at(open.count_ones());
+            knowledge.count_work(open.count_ones());
             for bit in bits(open) {
                 let cell = tile.cell(bit);
                 let distance = here.plan_distance(Point::over(cell, 0.0));

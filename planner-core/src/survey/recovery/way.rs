@@ -5,7 +5,7 @@ use crate::surface::Surface;
 use crate::survey::Knowledge;
 use crate::tile::{TileIndex, Tiles, neighbours};
 
-/// Tiles that the wave washes in a step.
+/// Tiles that the wave spreads into in a step.
 const SLICE: u32 = 1024;
 
 /// What [`Way::next`] knows.
@@ -19,7 +19,7 @@ pub(super) enum Next {
     None,
 }
 
-/// A wave from a goal over known columns, until it wets the robot's. A column's
+/// A wave from a goal over known columns, until it reaches the robot's. A column's
 /// distance is kept modulo 3: the next one towards the goal has one less.
 #[derive(Clone, Debug)]
 pub(super) struct Way<const TW: usize, const TH: usize> {
@@ -28,7 +28,7 @@ pub(super) struct Way<const TW: usize, const TH: usize> {
     layer: usize,
     /// Where the look at all tiles for it stands.
     cursor: TileIndex,
-    /// Whether anything has become wet in it.
+    /// Whether anything was reached in it.
     grows: bool,
     is_done: bool,
     /// Whether closed columns kept it from spreading.
@@ -70,8 +70,8 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         self.is_cut
     }
 
-    /// The columns that the wave has wet, tile by tile.
-    pub(super) fn wet(&self) -> impl Iterator<Item = u64> + '_ {
+    /// The columns that the wave has reached, tile by tile.
+    pub(super) fn reached(&self) -> impl Iterator<Item = u64> + '_ {
         let [a, b, c] = &self.layers;
         let words = a.values().zip(b.values());
         words.zip(c.values()).map(|((a, b), c)| a | b | c)
@@ -93,8 +93,8 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
             if self.is_done {
                 return Next::None;
             }
-            self.wash(knowledge.surface(), closed);
-            knowledge.look_at(1);
+            self.spread_into_tile(knowledge.surface(), closed);
+            knowledge.count_work(1);
         }
         let Some(distance) = self.distance(here) else {
             return Next::Searching;
@@ -106,21 +106,21 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         nearer.map_or(Next::None, Next::Column)
     }
 
-    /// Distance of `cell` from the goal modulo 3, if it is wet.
+    /// Distance of `cell` from the goal modulo 3, if it is reached.
     fn distance(&self, cell: Cell) -> Option<usize> {
         self.layers.iter().position(|layer| layer.contains(cell))
     }
 
     /// Lets the wave into the next tile.
-    fn wash(&mut self, surface: &Surface<TW, TH>, closed: &Tiles<u64, TW, TH>) {
+    fn spread_into_tile(&mut self, surface: &Surface<TW, TH>, closed: &Tiles<u64, TW, TH>) {
         let tile = self.cursor;
         let before = (self.layer + 2) % 3;
-        let wet = self
+        let reached = self
             .layers
             .iter()
-            .fold(0, |wet, layer| wet | layer.word(tile));
+            .fold(0, |reached, layer| reached | layer.word(tile));
         let from = |tile| self.layers.get(before).map_or(0, |layer| layer.word(tile));
-        let new = neighbours(tile, from) & surface.known(tile) & !wet;
+        let new = neighbours(tile, from) & surface.known(tile) & !reached;
         let shut = new & closed.word(tile);
         self.is_cut |= shut != 0;
         let new = new & !shut;

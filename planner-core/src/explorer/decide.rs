@@ -1,0 +1,159 @@
+//! What the explorer goes for: near by, far away, or nothing more.
+
+use super::Explorer;
+use super::aside::Verdict;
+use super::far::{self, Outcome};
+use super::window::{Aim, Candidate};
+use crate::robot::{Stop, Wait};
+use crate::role::Plan;
+use crate::zeroed::Maybe;
+
+/// What the near decision has come to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Near {
+    /// This robot goes to a frontier that it is nearest to.
+    Mine,
+    /// It had no plan, and goes to one that others are nearer to.
+    Theirs,
+    /// It goes on with what it had.
+    Nothing,
+}
+
+impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
+    /// Goes on with the far search, with what the near decision has left of the slice.
+    pub(super) fn search_far(&mut self) -> Outcome {
+        if self.far.is_idle() {
+            return Outcome::Searching;
+        }
+        let left = self.config.slice.saturating_sub(self.work + far::WAY_WORK);
+        let left = left.max(self.config.least_far());
+        self.far.advance(&self.around, left, &mut self.work)
+    }
+
+    fn start_sweep(&mut self) {
+        self.far_is_doubtful = false;
+        self.far.start_sweep(self.id, &self.others, &self.around);
+    }
+
+    /// Decides among the frontiers nearby, and which far search is to run if none of
+    /// them is this robot's own. A robot without a plan then gets the best one of others.
+    pub(super) fn decide_near(&mut self) -> Near {
+        let (now, id) = (self.around.now, self.id);
+        self.role.since = 0;
+        let knows_all = self.others.are_all_fresh(now);
+        let aim = Aim {
+            goal: self.last_goal,
+            hysteresis: self.config.hysteresis,
+            lean: (!knows_all).then_some(id),
+        };
+        let bonus = self.near.load(&self.around, &mut self.work);
+        if let Some(bonus) = &bonus {
+            let others = self.others.exploring();
+            let others = others.flat_map(|other| {
+                let is_lower = other.id < id;
+                other.whereabouts().map(move |cell| (cell, is_lower))
+            });
+            let mine = self
+                .near
+                .best(&self.around, &aim, bonus, others, &mut self.work);
+            match mine {
+                Some(candidate) if self.adopt_plan(candidate) => {
+                    self.far.cancel();
+                    return Near::Mine;
+                }
+                // Refused, and the way at hand goes on.
+                Some(_) if self.next_step().is_some() => {
+                    self.far.cancel();
+                    return Near::Mine;
+                }
+                _ => {}
+            }
+        }
+        let plan = self.role.plan.as_ref();
+        if self.far.is_idle() {
+            match plan.map(|plan| (plan.goal, plan.path.is_empty())) {
+                Some((goal, true)) => {
+                    self.far_is_doubtful = false;
+                    self.far.start_route(goal);
+                }
+                Some(_) if now < self.far_again => {}
+                _ => self.start_sweep(),
+            }
+        }
+        if let Some(bonus) = &bonus
+            && self.role.plan.is_none()
+        {
+            let others = core::iter::empty();
+            let theirs = self
+                .near
+                .best(&self.around, &aim, bonus, others, &mut self.work);
+            if let Some(candidate) = theirs {
+                self.adopt_plan(candidate);
+                return Near::Theirs;
+            }
+        }
+        Near::Nothing
+    }
+
+    /// The commitment rule: a longer plan than the one at hand costs a token, unless it
+    /// is the rest of the way at hand. Says whether the candidate is the plan now.
+    pub(super) fn adopt_plan(&mut self, candidate: Candidate) -> bool {
+        self.role.since = 0;
+        if candidate.path.is_empty() {
+            return false;
+        }
+        if let Some(plan) = &self.role.plan
+            && candidate.length > plan.remaining
+            && !(plan.path.is_empty() && candidate.goal == plan.goal)
+        {
+            if self.role.changes >= self.config.tokens {
+                return false;
+            }
+            self.role.changes += 1;
+        }
+        let mut path = candidate.path;
+        path.truncate(self.config.way.max(1));
+        self.last_goal = Some(candidate.goal);
+        self.role.plan = Some(Plan {
+            goal: candidate.goal,
+            remaining: candidate.length,
+            path,
+        });
+        true
+    }
+
+    /// The far search met no frontier that is worth a look.
+    pub(super) fn conclude(&mut self) -> Option<Stop> {
+        if self.far_is_doubtful {
+            return None;
+        }
+        let frontiers = self.around.map.frontiers();
+        let now = self.around.now;
+        match self
+            .around
+            .aside
+            .verdict(self.config.patience, frontiers, now)
+        {
+            Verdict::Nothing if self.link.hearsay().cells > 0 => Some(Stop::Enclosed { frontiers }),
+            Verdict::Nothing => Some(Stop::OutOfReach { frontiers }),
+            Verdict::Blocked(at) => Some(Stop::Blocked { frontiers, at }),
+            Verdict::Held(at) => Some(Stop::Held { frontiers, at }),
+            Verdict::Unseen(at) => Some(Stop::Unseen { frontiers, at }),
+            Verdict::Wait => {
+                self.waiting = Maybe::Just(Wait::Closed);
+                None
+            }
+            Verdict::Again => {
+                self.around.aside.next_round(self.config.patience, now);
+                self.begin_round();
+                None
+            }
+        }
+    }
+
+    /// A round begins: what was set aside is tried again, in whatever body.
+    pub(super) fn begin_round(&mut self) {
+        self.far_is_doubtful = true;
+        self.role.lost = 0;
+    }
+}

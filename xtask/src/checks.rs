@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{Command, cargo, command};
-use crate::{c_interface, documents, firmware, fuzz, host, install, lab, worst};
+use crate::{c_interface, documents, firmware, fuzz, host, install, lab, output, worst};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -15,6 +15,10 @@ pub(crate) struct Check {
     /// Returns a remark for the summary, or nothing.
     run: fn() -> Result<String>,
 }
+
+/// Checks that keep one core busy, with target folders and toolchains of their own: they
+/// run beside the others.
+const ASIDE: [&str; 2] = ["miri", "fuzz"];
 
 const CHECKS: &[Check] = &[
     Check {
@@ -130,19 +134,24 @@ const CHECKS: &[Check] = &[
     },
     Check {
         name: "test-keyed",
-        title: "planner-core's tests with signed frames",
+        title: "planner-core's tests of signed frames; the simulator's build has the key",
+        // Of all packages together, planner-core is built with the features that any of
+        // them wants: `test` runs every other of its tests with the key as well.
         run: || {
-            repeatable(cargo(["test", "-p=planner-core", "--features=keyed"]))
-                .env("PROPTEST_CASES", "256")
+            repeatable(host::test().args(["--lib", "--", "keyed", "signed"]))
                 .run()
                 .map(nothing)
         },
     },
     Check {
         name: "test-micromath",
-        title: "planner-core's tests with approximate mathematics",
+        title: "planner-core's tests with approximate mathematics, and without the key",
         run: || {
+            // What steers in the air is all that asks for these functions; frames are
+            // unsigned here.
             repeatable(cargo(["test", "-p=planner-core", "--features=micromath"]))
+                .args(["--lib", "--", "math::", "cao::", "survey::", "radio::"])
+                .arg("--skip=voxel_survey::")
                 .env("PROPTEST_CASES", "256")
                 .run()
                 .map(nothing)
@@ -250,24 +259,37 @@ pub(crate) fn run(only: &[&'static Check]) -> Result<()> {
         only => only.to_vec(),
     };
     let begin = Instant::now();
-    let results: Vec<_> = chosen
-        .iter()
-        .zip(1..)
-        .map(|(check, number)| {
-            println!(
-                "\n=== {number}/{} {}: {}",
-                chosen.len(),
-                check.name,
-                check.title
-            );
-            let begin = Instant::now();
-            let result = (check.run)();
-            if let Err(error) = &result {
-                println!("FAILED: {error:#}");
-            }
-            (*check, begin.elapsed(), result)
-        })
-        .collect();
+    let numbered = chosen.iter().zip(1..);
+    let (aside, rest): (Vec<_>, Vec<_>) =
+        numbered.partition(|(check, _)| chosen.len() > 1 && ASIDE.contains(&check.name));
+    let perform = |(check, number): (&&'static Check, usize)| {
+        println!(
+            "\n=== {number}/{} {}: {}",
+            chosen.len(),
+            check.name,
+            check.title
+        );
+        let begin = Instant::now();
+        let result = (check.run)();
+        if let Err(error) = &result {
+            println!("FAILED: {error:#}");
+        }
+        (*check, begin.elapsed(), result)
+    };
+    let mut results = Vec::new();
+    std::thread::scope(|scope| {
+        let beside = scope.spawn(|| {
+            let kept = aside
+                .into_iter()
+                .map(|check| output::keep(|| perform(check)));
+            kept.collect::<Vec<_>>()
+        });
+        results.extend(rest.into_iter().map(perform));
+        for (result, said) in beside.join().expect("no check panics") {
+            output::write(&said, std::io::stdout());
+            results.push(result);
+        }
+    });
 
     println!("\n=== summary");
     for (check, time, result) in &results {
@@ -306,11 +328,17 @@ fn core_builds_for_chips() -> Result<String> {
     ];
     for chip in CHIPS {
         install::target(chip)?;
-        // Built, not checked: only then are the assertions on sizes evaluated.
-        let build = || cargo(["build", "--release", "-p=planner-core", "--target", chip]);
-        build().run()?;
-        build().arg("--all-features").run()?;
     }
+    // Built, not checked: only then are the assertions on sizes evaluated. They are the
+    // same at every level of optimisation.
+    let build = || {
+        cargo(["build", "-p=planner-core"])
+            .args(["--config=profile.dev.opt-level=0"])
+            .args(["--config=profile.dev.package.planner-core.opt-level=0"])
+            .args(CHIPS.map(|chip| format!("--target={chip}")))
+    };
+    build().run()?;
+    build().arg("--all-features").run()?;
     Ok(CHIPS.join(", "))
 }
 

@@ -3,6 +3,8 @@
 //! Each function returns at once when the thing is there. Where it may not be
 //! installed from here, the error is the command to run.
 
+use std::sync::Mutex;
+
 use anyhow::{Context, Result, bail};
 
 use crate::shell::{Command, command};
@@ -29,7 +31,8 @@ pub(crate) fn target(triple: &str) -> Result<()> {
     if installed.success() && installed.stdout.lines().any(|line| line == triple) {
         return Ok(());
     }
-    or_say(rustup().args(["add", triple]))
+    let why = format!("Installing the standard library for {triple}");
+    or_say(&why, rustup().args(["add", triple]))
 }
 
 /// The nightly toolchain and `cargo fuzz`. Compiling it takes a minute or two.
@@ -40,13 +43,19 @@ pub(crate) fn cargo_fuzz() -> Result<()> {
         .lines()
         .any(|line| line.starts_with(NIGHTLY))
     {
-        or_say(command("rustup").args(["toolchain", "install", NIGHTLY, "--profile=minimal"]))?;
+        or_say(
+            "Installing the compiler that the sanitizers come with",
+            command("rustup").args(["toolchain", "install", NIGHTLY, "--profile=minimal"]),
+        )?;
     }
     let version = command("cargo").args(["fuzz", "--version"]).output()?;
     if version.success() {
         return Ok(());
     }
-    or_say(command("cargo").args(["install", "cargo-fuzz", "--locked"]))
+    or_say(
+        "Compiling the program that fuzzes, a minute or two",
+        command("cargo").args(["install", "cargo-fuzz", "--locked"]),
+    )
 }
 
 /// Miri, with the sources that it interprets.
@@ -57,13 +66,16 @@ pub(crate) fn miri() -> Result<()> {
         .lines()
         .any(|line| line.starts_with(NIGHTLY))
     {
-        return or_say(command("rustup").args([
-            "toolchain",
-            "install",
-            NIGHTLY,
-            "--profile=minimal",
-            "--component=miri,rust-src",
-        ]));
+        return or_say(
+            "Installing the compiler that Miri comes with",
+            command("rustup").args([
+                "toolchain",
+                "install",
+                NIGHTLY,
+                "--profile=minimal",
+                "--component=miri,rust-src",
+            ]),
+        );
     }
     let components = command("rustup")
         .args(["component", "list", "--installed", "--toolchain", NIGHTLY])
@@ -72,14 +84,17 @@ pub(crate) fn miri() -> Result<()> {
     if has("miri") && has("rust-src") {
         return Ok(());
     }
-    or_say(command("rustup").args([
-        "component",
-        "add",
-        "--toolchain",
-        NIGHTLY,
-        "miri",
-        "rust-src",
-    ]))
+    or_say(
+        "Installing Miri and the sources that it interprets",
+        command("rustup").args([
+            "component",
+            "add",
+            "--toolchain",
+            NIGHTLY,
+            "miri",
+            "rust-src",
+        ]),
+    )
 }
 
 /// The emulator.
@@ -159,14 +174,22 @@ fn install(program: &str, package: &str) -> Result<()> {
     };
     let install = || apt(&["install", "-y", "--no-install-recommends", package]);
     // A new machine has no package lists yet.
-    install().run().or_else(|_| {
-        apt(&["update"]).run()?;
-        or_say(install())
+    or_say(
+        &format!("Installing {package}, which a check needs"),
+        install(),
+    )
+    .or_else(|_| {
+        or_say("Fetching the lists of packages", apt(&["update"]))?;
+        or_say(&format!("Installing {package}"), install())
     })
 }
 
-/// Runs an installing command; if that fails, the error tells to run it.
-fn or_say(install: Command) -> Result<()> {
+/// Says why something is installed, and runs the command that does it, one at a time; if
+/// that fails, the error tells to run it.
+fn or_say(why: &str, install: Command) -> Result<()> {
+    static ONE: Mutex<()> = Mutex::new(());
+    let _one = ONE.lock();
+    println!("{why}:");
     let say = format!("cannot install what is missing; run `{install}`");
     install.run().context(say)
 }

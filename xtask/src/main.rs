@@ -1,37 +1,29 @@
 //! What Cargo cannot say by itself: every check in one command, the image for
 //! the chip, long runs. `cargo xtask --help` tells more.
 
-/// In place of the standard library's, which panics when nobody reads any more: a check
-/// goes on, and its exit status tells.
+/// In place of the standard library's, which panics when nobody reads any more, and
+/// which cannot be kept: see [`output`].
 macro_rules! println {
-    ($($words:tt)*) => {{
-        use std::io::Write;
-        let _ = writeln!(std::io::stdout(), $($words)*);
-    }};
+    ($($words:tt)*) => { print!("{}\n", format_args!($($words)*)) };
 }
 
 /// See [`println!`].
 macro_rules! print {
-    ($($words:tt)*) => {{
-        use std::io::Write;
-        let _ = write!(std::io::stdout(), $($words)*);
-    }};
+    ($($words:tt)*) => {
+        crate::output::write(format!($($words)*).as_bytes(), std::io::stdout())
+    };
 }
 
 /// See [`println!`].
 macro_rules! eprintln {
-    ($($words:tt)*) => {{
-        use std::io::Write;
-        let _ = writeln!(std::io::stderr(), $($words)*);
-    }};
+    ($($words:tt)*) => { eprint!("{}\n", format_args!($($words)*)) };
 }
 
 /// See [`println!`].
 macro_rules! eprint {
-    ($($words:tt)*) => {{
-        use std::io::Write;
-        let _ = write!(std::io::stderr(), $($words)*);
-    }};
+    ($($words:tt)*) => {
+        crate::output::write(format!($($words)*).as_bytes(), std::io::stderr())
+    };
 }
 
 mod budget;
@@ -44,6 +36,7 @@ mod host;
 mod install;
 mod lab;
 mod lines;
+mod output;
 mod shell;
 mod tools;
 mod worst;

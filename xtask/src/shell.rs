@@ -8,6 +8,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 
+use crate::output;
+
 /// The folder of the workspace.
 pub(crate) fn root() -> &'static Path {
     static ROOT: OnceLock<PathBuf> = OnceLock::new();
@@ -76,7 +78,12 @@ impl Command {
     /// Shows the command, lets it print, and wants it to succeed.
     pub(crate) fn run(self) -> Result<()> {
         println!("$ {self}");
-        let output = self.expression().run().with_context(|| self.absent())?;
+        let mut expression = self.expression();
+        if output::is_kept() {
+            expression = expression.stderr_to_stdout().stdout_capture();
+        }
+        let output = expression.run().with_context(|| self.absent())?;
+        output::write(&output.stdout, std::io::stdout());
         if !output.status.success() {
             bail!("`{self}` failed ({})", output.status);
         }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use host_sim::draw;
 use host_sim::record::TraceError;
-use host_sim::trace::Trace;
+use host_sim::record::grid::Trace;
 use host_sim::world::{Problem, ReadOptions, Scale, World};
 use libfuzzer_sys::fuzz_target;
 

@@ -9,8 +9,10 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::Scenario as VoxelScenario;
 use host_sim::scene::Scene;
 use host_sim::scene::octree::OcTree;
-use host_sim::survey::voxels::{self, VoxelTrace};
-use host_sim::survey::{self, Summary, Trace};
+use host_sim::record::voxels::{self, VoxelTrace};
+use host_sim::record::Deed;
+use host_sim::record::heights::Trace;
+use host_sim::survey::Summary;
 use host_sim::terrain::Terrain;
 use libfuzzer_sys::fuzz_target;
 use planner_core::surface::Height;
@@ -71,7 +73,7 @@ fn heights<E>(read: Result<Trace, E>) {
     let ticks = trace.seen.len() as u32;
     let _ = draw::oblique_view(&trace, ticks / 2);
     let _ = draw::top_view(&trace, ticks);
-    let _ = survey::octree(&trace, ticks);
+    let _ = trace.octree(ticks);
     let mut file = Vec::new();
     trace.write(&mut file).unwrap();
     let again = Trace::read(&file[..]).ok().expect("it is read again");
@@ -81,7 +83,7 @@ fn heights<E>(read: Result<Trace, E>) {
 fn voxels<E>(read: Result<VoxelTrace, E>) {
     let Ok(trace) = read else { return };
     assert!(trace.seen.iter().all(|&seen| seen <= trace.visible));
-    let _ = trace.oblique_view(trace.seen.len() as u32);
+    let _ = draw::oblique_voxels(&trace, trace.seen.len() as u32);
     let mut file = Vec::new();
     trace.write(&mut file).unwrap();
     let again = VoxelTrace::read(&file[..]).ok().expect("it is read again");
@@ -150,14 +152,14 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
             _ => 1,
         };
         tick = tick.wrapping_add(pause);
-        records.push(survey::Record {
+        records.push(host_sim::record::heights::Record {
             tick,
             robot: from.byte() % 5,
             at: point(from),
             deed: [
-                survey::Deed::Flew,
-                survey::Deed::Refused,
-                survey::Deed::Hovered,
+                Deed::Flew,
+                Deed::Refused,
+                Deed::Hovered,
             ][usize::from(what >> 3) % 3],
             goal: (what & 0x80 != 0).then(|| Cell::new(from.byte().into(), -1)),
             gain: from.length(9.0),
@@ -215,8 +217,9 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
             tick,
             robot: from.byte() % 4,
             at: voxel(from),
-            deed: [survey::Deed::Flew, survey::Deed::Hovered][usize::from(what >> 3) % 2],
+            deed: [Deed::Flew, Deed::Hovered][usize::from(what >> 3) % 2],
             goal: (what & 0x80 != 0).then(|| voxel(from)),
+            gain: host_sim::record::Nothing {},
             known: 7,
             work: 7,
             sent: Default::default(),

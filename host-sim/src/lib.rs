@@ -4,7 +4,7 @@
 //! scenario (world, robots, planner, seed) -> run -> trace -> picture | table
 //! ```
 //! A [`Scenario`](scenario::grid::Scenario) holds everything that a run follows from;
-//! [`run::run`] gives its outcome and, if asked, the [`Trace`](trace::Trace)
+//! [`run::run`] gives its outcome and, if asked, the [`Trace`](record::grid::Trace)
 //! that everything else is drawn from.
 //!
 //! Compiled for the browser (`wasm32`), the library lacks `chip`, `experiments`,
@@ -37,5 +37,4 @@ pub mod sensor;
 pub mod summary;
 pub mod survey;
 pub mod terrain;
-pub mod trace;
 pub mod world;

@@ -1,6 +1,7 @@
 //! A robot of a grid, and what became of its decisions.
 
-use planner_core::{AnyPlanner, Cell, Direction, Reason, RobotId, Stop};
+use planner_core::{AnyPlanner, Cell, Direction, RobotId, Stop};
+use serde::{Deserialize, Serialize};
 
 /// A robot: a planner and the body that it moves.
 pub struct Robot<const TW: usize, const TH: usize> {
@@ -52,7 +53,7 @@ pub struct Step {
 }
 
 /// What a robot sent by radio.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sent {
     /// Number of frames.
     pub frames: u32,
@@ -81,22 +82,6 @@ pub enum Deed<S = Stop> {
     Looked(Direction),
     /// Had stopped.
     Stopped(S),
-}
-
-impl Deed {
-    /// The same as a record has it.
-    pub fn in_short(self) -> Deed<Reason> {
-        match self {
-            Self::Moved(to) => Deed::Moved(to),
-            Self::Blocked(to) => Deed::Blocked(to),
-            Self::Held(to) => Deed::Held(to),
-            Self::Exchanged(to) => Deed::Exchanged(to),
-            Self::Yielded => Deed::Yielded,
-            Self::Waited => Deed::Waited,
-            Self::Looked(to) => Deed::Looked(to),
-            Self::Stopped(stop) => Deed::Stopped(stop.reason()),
-        }
-    }
 }
 
 impl<S> Deed<S> {

@@ -37,7 +37,7 @@ pub struct Summary {
     pub maps_differ_because: Option<&'static str>,
     /// Moves into obstacles; anything but 0 is a bug of the planner.
     pub violations: usize,
-    /// [`Trace::digest`](crate::trace::Trace::digest).
+    /// [`Trace::digest`](crate::record::grid::Trace::digest).
     pub trace_digest: String,
     /// Name of the map.
     pub map: String,

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use host_sim::experiments::ghosts::{Attack, one_robot, sensor, three_robots};
 use host_sim::planners::PlannerKind;
+use host_sim::record::grid::Trace;
 use host_sim::run::{Options, RobotOutcome, run};
 use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{Event, Faults};
 use host_sim::scenario::{Forger, Forgery, MediumKind, Reach};
 use host_sim::summary::Summary;
-use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, generate};
 use planner_core::RobotId;
 use planner_core::radio::Key;

@@ -5,13 +5,13 @@ use std::sync::Arc;
 use clap::ValueEnum;
 use host_sim::draw;
 use host_sim::planners::{PlannerKind, Setup};
+use host_sim::record::grid::Trace;
 use host_sim::robot::Deed;
 use host_sim::run::{self, Host, Options, Outcome, run_compiled};
 use host_sim::scenario::ScenarioError;
 use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{CellSpan, Event, Faults, RobotSpan};
 use host_sim::sensor::Sensor;
-use host_sim::trace::Trace;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::radio::{FrameError, Heard, MAX_LEN};
 use planner_core::{
@@ -279,7 +279,8 @@ fn robots_that_turn_see_everything_with_any_field_of_view() {
             assert_eq!(robot.cells_missed, 0, "{fov} degrees in {family}");
         }
         for direction in Direction::ALL {
-            let looked = |record: &&host_sim::trace::Record| record.deed == Deed::Looked(direction);
+            let looked =
+                |record: &&host_sim::record::grid::Record| record.deed == Deed::Looked(direction);
             assert!(trace.records.iter().any(|record| looked(&record)));
         }
         // Whoever follows the trace sees what the robots saw.

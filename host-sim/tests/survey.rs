@@ -1,5 +1,6 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
+use host_sim::record::Deed;
 use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -7,7 +8,6 @@ use host_sim::scenario::voxels::Scenario as VoxelScenario;
 use host_sim::scenario::{Event, MediumKind};
 use host_sim::scene::Scene;
 use host_sim::scene::octree::OcTree;
-use host_sim::survey::{Deed, octree};
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
 use planner_core::{Cell, Direction, Extent, Point, Reason};
@@ -226,7 +226,7 @@ fn a_town_is_mapped_as_octomap_reads_it() {
         let trace = run(&terrain, &Scenario::new(planner, 2, 1)).unwrap();
         assert!(trace.complete(), "{planner:?}");
         assert_eq!(trace.safety, Default::default());
-        let tree = octree(&trace, u32::MAX);
+        let tree = trace.octree(u32::MAX);
         check_with_octomap(&tree, "heights.bt");
     }
 }

@@ -1,8 +1,8 @@
 //! The lab: what is set, what runs, and what is shown.
 
 use host_sim::planners::PlannerKind;
+use host_sim::record::grid::Trace;
 use host_sim::scenario::{Conditions, Event, Faults};
-use host_sim::trace::Trace;
 use host_sim::world::Starts;
 use planner_core::{Cell, RobotId};
 

@@ -1,7 +1,7 @@
 //! What is shown, as files.
 
 use host_sim::draw;
-use host_sim::trace::Trace;
+use host_sim::record::grid::Trace;
 use image::codecs::png::PngEncoder;
 use image::{ColorType, ImageEncoder};
 use planner_core::Cell;

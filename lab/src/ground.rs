@@ -1,8 +1,8 @@
 //! The cells of a view as pixels, one each.
 
 use egui::{Color32, ColorImage};
+use host_sim::record::grid::Record;
 use host_sim::run::Stepping;
-use host_sim::trace::Record;
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, Extent};
 

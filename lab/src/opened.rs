@@ -1,9 +1,9 @@
 //! What a file holds that was opened: a map, or a trace of any kind.
 
 use host_sim::record::TraceError;
-use host_sim::survey;
-use host_sim::survey::voxels::VoxelTrace;
-use host_sim::trace::Trace;
+use host_sim::record::grid::Trace;
+use host_sim::record::heights;
+use host_sim::record::voxels::VoxelTrace;
 
 use crate::maps::Map;
 
@@ -14,7 +14,7 @@ pub(crate) enum Opened {
     /// What `explore`, or firmware in the loop, has left.
     Exploration(Box<Trace>),
     /// What `survey` has left of a terrain of heights.
-    Survey(Box<survey::Trace>),
+    Survey(Box<heights::Trace>),
     /// What `survey` has left of a town of voxels.
     Voxels(Box<VoxelTrace>),
 }
@@ -43,7 +43,7 @@ impl Opened {
         }
         let read = Trace::read(bytes).map(|trace| Self::Exploration(Box::new(trace)));
         let read = or(read, || {
-            survey::Trace::read(bytes).map(|trace| Self::Survey(Box::new(trace)))
+            heights::Trace::read(bytes).map(|trace| Self::Survey(Box::new(trace)))
         });
         let read = or(read, || {
             VoxelTrace::read(bytes).map(|trace| Self::Voxels(Box::new(trace)))

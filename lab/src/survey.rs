@@ -8,8 +8,8 @@ mod voxels;
 
 use egui::{Sense, Shape, Stroke, Ui};
 use host_sim::draw::write_png;
-use host_sim::survey::Trace;
-use host_sim::survey::voxels::VoxelTrace;
+use host_sim::record::heights::Trace;
+use host_sim::record::voxels::VoxelTrace;
 
 use crate::colors::{Colors, mix};
 use crate::view::lines;

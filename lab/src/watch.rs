@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use host_sim::run::{self, Outcome, Stepping};
 
+use host_sim::record::grid::{Record, Trace};
 use host_sim::scenario::grid::Scenario;
 use host_sim::senses::Senses;
 use host_sim::sensor::Sensor;
-use host_sim::trace::{Record, Trace};
 use host_sim::world::Reachable;
 use planner_core::Cell;
 

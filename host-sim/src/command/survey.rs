@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Args;
-use host_sim::draw::{Coverage, animate, oblique_view, top_view, write_png};
+use host_sim::draw::{Coverage, animate, oblique_view, oblique_voxels, top_view, write_png};
+use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::heights::open;
 use host_sim::run::voxels::Simulation;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -13,8 +14,7 @@ use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
 use host_sim::scene::Scene;
-use host_sim::survey::voxels::VoxelTrace;
-use host_sim::survey::{Summary, octree};
+use host_sim::survey::Summary;
 use host_sim::terrain::TerrainSource;
 use indicatif::ProgressBar;
 use planner_core::survey::Limits;
@@ -108,7 +108,7 @@ impl Survey {
             animate(steps, |step| top_view(&trace, step), file)
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
-        folder.write("map.bt", |file| Ok(octree(&trace, all).write(file)?))?;
+        folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
         match self.output.json {
@@ -172,11 +172,11 @@ impl Survey {
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
         folder.write("oblique.png", |file| {
-            write_png(&trace.oblique_view(all - 1), file)
+            write_png(&oblique_voxels(&trace, all - 1), file)
         })?;
         folder.write("explored.gif", |file| {
             let ticks = trace.seen.len() as u32;
-            animate(ticks, |tick| trace.oblique_view(tick), file)
+            animate(ticks, |tick| oblique_voxels(&trace, tick), file)
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;

@@ -9,7 +9,7 @@ use planner_core::{Cell, Extent};
 use super::DrawError;
 use super::paint::{Ground, INK, rgb, robot_color};
 use super::replay::{Replay, cells};
-use crate::trace::Trace;
+use crate::record::grid::Trace;
 
 /// Frames at most; a longer run is shown in larger strides.
 const MOST_FRAMES: u32 = 200;

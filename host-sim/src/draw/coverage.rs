@@ -6,9 +6,9 @@ use super::DrawError;
 use super::chart::{Axis, Chart, Panel, Point, Series, Style};
 use super::picture::title;
 use super::replay::Replay;
-use crate::survey;
-use crate::survey::voxels::VoxelTrace;
-use crate::trace::Trace;
+use crate::record::grid::Trace;
+use crate::record::heights;
+use crate::record::voxels::VoxelTrace;
 
 /// What had been seen in a run.
 #[derive(Clone, Debug)]
@@ -83,8 +83,8 @@ impl From<&Trace> for Coverage {
     }
 }
 
-impl From<&survey::Trace> for Coverage {
-    fn from(trace: &survey::Trace) -> Self {
+impl From<&heights::Trace> for Coverage {
+    fn from(trace: &heights::Trace) -> Self {
         let (name, planner) = (trace.terrain.name(), trace.scenario.planner);
         Self {
             title: format!("{name}: {} robots, {planner}", trace.robots),

@@ -23,8 +23,7 @@ use thiserror::Error;
 pub use animation::{animate, animation};
 #[cfg(not(target_arch = "wasm32"))]
 pub use coverage::Coverage;
-pub use oblique::oblique_view;
-pub(crate) use oblique::{Block, oblique};
+pub use oblique::{oblique_view, oblique_voxels};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
 pub use replay::Replay;

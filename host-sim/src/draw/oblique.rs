@@ -1,10 +1,12 @@
 //! The view from the south-east and above: columns as blocks, ways in the air.
 
 use image::{Rgb, RgbImage};
+use planner_core::volume::Voxel;
 use planner_core::{Cell, Extent, Point};
 
 use super::paint::{DARK, disc, line, put, shade, way_color};
-use crate::survey::Trace;
+use crate::record::heights::Trace;
+use crate::record::voxels::VoxelTrace;
 
 /// Width of a picture in pixels, about.
 const WIDTH: f32 = 900.0;
@@ -43,20 +45,32 @@ pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
     oblique(trace.extent, highest, blocks.collect(), &ways)
 }
 
+/// What had been seen of a scene of voxels after `tick` steps, with the ways flown.
+pub fn oblique_voxels(trace: &VoxelTrace, tick: u32) -> RgbImage {
+    let known = trace.found.iter().take_while(|found| found.0 <= tick);
+    let blocks = known.filter(|found| found.2).map(|(_, voxel, _)| Block {
+        cell: voxel.cell(),
+        bottom: f32::from(voxel.z),
+        top: f32::from(voxel.z) + 1.0,
+    });
+    let point = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
+    let ways = trace.ways.iter();
+    let ways: Vec<Vec<Point>> = ways
+        .map(|way| way.iter().take(tick as usize + 1).map(point).collect())
+        .collect();
+    let highest = f32::from(trace.scene.levels());
+    oblique(trace.scene.extent(), highest, blocks.collect(), &ways)
+}
+
 /// Something solid over one column of cells.
-pub(crate) struct Block {
-    pub(crate) cell: Cell,
-    pub(crate) bottom: f32,
-    pub(crate) top: f32,
+struct Block {
+    cell: Cell,
+    bottom: f32,
+    top: f32,
 }
 
 /// Blocks and ways in a box whose blocks reach up to `highest`.
-pub(crate) fn oblique(
-    extent: Extent,
-    highest: f32,
-    mut blocks: Vec<Block>,
-    ways: &[Vec<Point>],
-) -> RgbImage {
+fn oblique(extent: Extent, highest: f32, mut blocks: Vec<Block>, ways: &[Vec<Point>]) -> RgbImage {
     let (width, height) = (f32::from(extent.width), f32::from(extent.height));
     let margin = 20.0;
     let top = highest + 8.0;

@@ -10,7 +10,7 @@ use plotters::prelude::*;
 use super::paint::{Ground, INK, ROBOT_COLORS, robot_color, text};
 use super::replay::{Replay, cells};
 use super::{DrawError, write_png};
-use crate::trace::Trace;
+use crate::record::grid::Trace;
 
 /// Sides of the drawn map in pixels, about.
 const SIDE: u32 = 1200;

@@ -3,8 +3,8 @@
 use planner_core::{Cell, Extent};
 
 use super::paint::Ground;
+use crate::record::grid::{Record, Trace};
 use crate::senses::Senses;
-use crate::trace::{Record, Trace};
 use crate::world::Reachable;
 
 /// A trace played forward.

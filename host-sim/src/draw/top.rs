@@ -4,7 +4,7 @@ use image::RgbImage;
 use planner_core::Point;
 
 use super::paint::{DARK, disc, line, shade, way_color};
-use crate::survey::Trace;
+use crate::record::heights::Trace;
 
 /// Pixels of a cell's side.
 const SCALE: u32 = 6;

@@ -2,7 +2,7 @@
 
 use planner_core::Reason;
 
-use super::{action_of, last_action, reason_of};
+use super::{action_of, reason_of};
 
 /// What a robot did in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,30 +17,27 @@ pub enum Deed {
     Stopped(Reason),
 }
 
-impl Deed {
-    /// Its number in files and digests.
-    pub(crate) const fn action(self) -> u8 {
-        match self {
-            Self::Flew => 0,
-            Self::Refused => 1,
-            Self::Hovered => 2,
-            Self::Stopped(reason) => action_of(reason),
+/// Its number in files and digests.
+impl From<Deed> for u8 {
+    fn from(deed: Deed) -> Self {
+        match deed {
+            Deed::Flew => 0,
+            Deed::Refused => 1,
+            Deed::Hovered => 2,
+            Deed::Stopped(reason) => action_of(reason),
         }
     }
+}
 
-    /// What has this number.
-    pub(crate) fn of_action(action: u8) -> Option<Self> {
-        Some(match action {
-            0 => Self::Flew,
-            1 => Self::Refused,
-            2 => Self::Hovered,
-            _ => Self::Stopped(reason_of(action)?),
-        })
-    }
+impl TryFrom<u8> for Deed {
+    type Error = String;
 
-    /// Which numbers there are, in words.
-    pub(crate) fn actions() -> String {
-        let (first, last) = (action_of(Reason::Complete), last_action());
-        format!("an action, 0 to 2 or {first} to {last}")
+    fn try_from(action: u8) -> Result<Self, String> {
+        match action {
+            0 => Ok(Self::Flew),
+            1 => Ok(Self::Refused),
+            2 => Ok(Self::Hovered),
+            _ => reason_of(action, 2).map(Self::Stopped),
+        }
     }
 }

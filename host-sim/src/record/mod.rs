@@ -8,9 +8,13 @@
 //! The digest is the first 16 hex digits of the SHA-256 of all records, each as its
 //! numbers in the order of the columns, little-endian, as wide as the type of each.
 
+mod decision;
 mod error;
 mod flight;
+pub mod grid;
+pub mod heights;
 mod reason;
+pub mod voxels;
 
 use std::fmt::Display;
 use std::io::{self, BufRead, Write};
@@ -19,9 +23,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+pub use decision::{Kind, Nothing, Record};
 pub use error::TraceError;
 pub use flight::Deed;
-pub(crate) use reason::{action_of, last_action, reason_of};
+pub(crate) use reason::{action_of, reason_of};
 
 use crate::excerpt::excerpt;
 
@@ -39,40 +44,11 @@ pub struct Format {
     pub oldest: u32,
 }
 
-/// A record as it stands in a file.
-pub(crate) trait Row: Copy + Serialize + DeserializeOwned {
-    /// What the numbers are.
-    const COLUMNS: &'static [&'static str];
-
-    /// Adds the numbers to a digest.
-    fn add_to(&self, sha: &mut Sha256);
-}
-
-/// Declares a [`Row`] by its columns.
-macro_rules! row {
-    ($(#[$about:meta])* $name:ident { $($column:ident: $number:ty),* $(,)? }) => {
-        $(#[$about])*
-        #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-        pub(crate) struct $name {
-            $(pub(crate) $column: $number,)*
-        }
-
-        impl $crate::record::Row for $name {
-            const COLUMNS: &'static [&'static str] = &[$(stringify!($column)),*];
-
-            fn add_to(&self, sha: &mut sha2::Sha256) {
-                $(sha2::Digest::update(sha, self.$column.to_le_bytes());)*
-            }
-        }
-    };
-}
-pub(crate) use row;
-
 /// 16 hex digits that differ if any record does.
-pub(crate) fn digest<R: Row>(rows: impl IntoIterator<Item = R>) -> String {
+pub(crate) fn digest<K: Kind>(records: &[Record<K>]) -> String {
     let mut sha = Sha256::new();
-    for row in rows {
-        row.add_to(&mut sha);
+    for record in records {
+        record.add_to(&mut sha);
     }
     let digest = sha.finalize();
     let first = digest.iter().take(8);
@@ -92,11 +68,10 @@ struct Label {
 ///
 /// # Errors
 /// Those of `to`.
-pub(crate) fn write<R: Row>(
+pub(crate) fn write<K: Kind>(
     mut to: impl Write,
-    format: Format,
     header: &impl Serialize,
-    rows: impl ExactSizeIterator<Item = R> + Clone,
+    records: &[Record<K>],
 ) -> io::Result<()> {
     #[derive(Serialize)]
     struct Labelled<'a, H> {
@@ -106,99 +81,99 @@ pub(crate) fn write<R: Row>(
         header: &'a H,
     }
     let label = Label {
-        format: format.name.into(),
-        version: format.version,
-        digest: digest(rows.clone()),
-        records: rows.len(),
+        format: K::FORMAT.name.into(),
+        version: K::FORMAT.version,
+        digest: digest(records),
+        records: records.len(),
     };
     serde_json::to_writer(&mut to, &Labelled { label, header })?;
     writeln!(to)?;
     let mut builder = csv::WriterBuilder::new();
     let mut lines = builder.has_headers(false).from_writer(to);
-    lines.write_record(R::COLUMNS)?;
-    for row in rows {
-        lines.serialize(row)?;
+    lines.write_record(Record::<K>::columns())?;
+    for record in records {
+        lines.serialize(record)?;
     }
     lines.flush()
 }
 
-/// What stands below the header.
-pub(crate) struct Lines<R> {
-    /// Of the file.
-    pub(crate) version: u32,
-    rows: Vec<R>,
-}
-
-/// Takes a trace file apart, and checks that it is whole.
+/// Takes a trace file apart, and checks that it is whole: its version, header and records.
 ///
 /// # Errors
 /// What is wrong, and in which line.
-pub(crate) fn read<H: DeserializeOwned, R: Row>(
+pub(crate) fn read<H: DeserializeOwned, K: Kind>(
     mut from: impl BufRead,
-    format: Format,
-) -> Result<(H, Lines<R>), TraceError> {
+) -> Result<(u32, H, Vec<Record<K>>), TraceError> {
     let mut header = String::new();
     from.read_line(&mut header)?;
     let label: Label = serde_json::from_str(&header)?;
-    let versions = format.oldest..=format.version;
-    if label.format != format.name || !versions.contains(&label.version) {
+    let reads = K::FORMAT;
+    if label.format != reads.name || !(reads.oldest..=reads.version).contains(&label.version) {
         return Err(TraceError::Format {
-            reads: format,
+            reads,
             format: excerpt(&label.format),
             version: label.version,
         });
     }
     let header = serde_json::from_str(&header)?;
-    let rows = read_rows::<R>(from)?;
-    if rows.len() != label.records {
+    let records = read_records::<K>(from)?;
+    if records.len() != label.records {
         return Err(TraceError::Records {
             expected: label.records,
-            found: rows.len(),
+            found: records.len(),
         });
     }
-    let found = digest(rows.iter().copied());
+    let found = digest(&records);
     if found != label.digest {
         let expected = excerpt(&label.digest);
         return Err(TraceError::Digest { expected, found });
     }
-    let version = label.version;
-    Ok((header, Lines { version, rows }))
+    Ok((label.version, header, records))
 }
 
 /// The lines below the header.
-fn read_rows<R: Row>(from: impl BufRead) -> Result<Vec<R>, TraceError> {
+fn read_records<K: Kind>(from: impl BufRead) -> Result<Vec<Record<K>>, TraceError> {
     let mut lines = from.lines();
+    let names = Record::<K>::columns();
     let columns = lines.next().transpose()?.unwrap_or_default();
-    if columns != R::COLUMNS.join(",") {
-        let expected = format!("the columns {}", R::COLUMNS.join(","));
+    if columns != names.join(",") {
+        let expected = format!("the columns {}", names.join(","));
         return Err(wrong(expected, columns).at(FIRST_LINE - 1));
     }
-    let row = |(text, line): (io::Result<String>, usize)| {
+    let record = |(text, line): (io::Result<String>, usize)| {
         let text = text?;
         let fields: csv::StringRecord = text.split(',').collect();
-        let row = fields.deserialize(None).ok();
-        row.filter(|_| fields.len() == R::COLUMNS.len())
-            .ok_or_else(|| {
-                let expected = format!("{} numbers with commas between", R::COLUMNS.len());
-                wrong(expected, text).at(line)
-            })
+        let numbers = || format!("{} numbers with commas between", names.len());
+        let record = match fields.len() == names.len() {
+            true => fields.deserialize(None).map_err(|error| said(&error)),
+            false => Err(None),
+        };
+        record.map_err(|said| wrong(said.unwrap_or_else(numbers), text).at(line))
     };
-    lines.zip(FIRST_LINE..).map(row).collect()
+    lines.zip(FIRST_LINE..).map(record).collect()
 }
 
-impl<R: Row> Lines<R> {
-    /// The records, each of which `take` makes of its row, or objects to.
-    ///
-    /// # Errors
-    /// The first objection, with its line.
-    pub(crate) fn records<T>(
-        &self,
-        mut take: impl FnMut(R) -> Result<T, Objection>,
-    ) -> Result<Vec<T>, TraceError> {
-        let rows = self.rows.iter().zip(FIRST_LINE..);
-        rows.map(|(&row, line)| take(row).map_err(|objection| objection.at(line)))
-            .collect()
+/// What a number should be that is one, but none of a record.
+fn said(error: &csv::Error) -> Option<String> {
+    let csv::ErrorKind::Deserialize { err, .. } = error.kind() else {
+        return None;
+    };
+    match err.kind() {
+        csv::DeserializeErrorKind::Message(expected) => Some(expected.clone()),
+        _ => None,
     }
+}
+
+/// Checks the records one by one.
+///
+/// # Errors
+/// The first objection, with its line.
+pub(crate) fn check<K: Kind>(
+    records: &[Record<K>],
+    mut check: impl FnMut(&Record<K>) -> Result<(), Objection>,
+) -> Result<(), TraceError> {
+    let mut lines = records.iter().zip(FIRST_LINE..);
+    lines.try_for_each(|(record, line)| check(record).map_err(|objection| objection.at(line)))
 }
 
 /// What should stand in a line, and what does.
@@ -239,7 +214,8 @@ pub(crate) struct Order {
 impl Order {
     /// # Errors
     /// A robot that there is not, or a record that is late or too early.
-    pub(crate) fn take(&mut self, tick: u32, robot: u8) -> Result<(), Objection> {
+    pub(crate) fn take<K: Kind>(&mut self, record: &Record<K>) -> Result<(), Objection> {
+        let (tick, robot) = (record.tick, record.robot);
         if usize::from(robot) >= self.robots {
             return Err(wrong(
                 format!("a robot from 0 to {}", self.robots - 1),

@@ -3,21 +3,24 @@
 use planner_core::Reason;
 
 /// What the action of a robot that had stopped begins with; the reason's number is added.
-pub(crate) const STOPPED: u8 = 32;
+const STOPPED: u8 = 32;
 
 /// The action of a robot that had stopped for this reason: 32 and [`Reason::code`].
 pub(crate) const fn action_of(reason: Reason) -> u8 {
     STOPPED + reason.code()
 }
 
-/// The reason with this action.
-pub(crate) fn reason_of(action: u8) -> Option<Reason> {
-    Reason::from_code(action.checked_sub(STOPPED)?)
-}
-
-/// The action with the highest number.
-pub(crate) const fn last_action() -> u8 {
-    STOPPED + Reason::ALL.len() as u8 - 1
+/// The reason with this action, where the last one of a robot that has not stopped is
+/// `last`.
+///
+/// # Errors
+/// What actions there are.
+pub(crate) fn reason_of(action: u8, last: u8) -> Result<Reason, String> {
+    let code = action.checked_sub(STOPPED);
+    code.and_then(Reason::from_code).ok_or_else(|| {
+        let end = STOPPED + Reason::ALL.len() as u8 - 1;
+        format!("an action, 0 to {last} or {STOPPED} to {end}")
+    })
 }
 
 #[cfg(test)]
@@ -27,10 +30,10 @@ mod tests {
     #[test]
     fn a_reason_is_its_action() {
         for reason in Reason::ALL {
-            assert_eq!(reason_of(action_of(reason)), Some(reason));
+            assert_eq!(reason_of(action_of(reason), 2), Ok(reason));
         }
-        for action in (0..STOPPED).chain(last_action() + 1..=u8::MAX) {
-            assert_eq!(reason_of(action), None);
+        for action in (0..32).chain(41..=u8::MAX) {
+            assert!(reason_of(action, 2).is_err());
         }
     }
 }

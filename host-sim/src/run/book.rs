@@ -8,11 +8,11 @@ use planner_core::{Cell, Direction, Map};
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
 use crate::fleet::Fleet;
+use crate::record::grid::{Record, Trace};
 use crate::robot::{Deed, Robot, Sent};
 use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::sensor::Sensor;
-use crate::trace::{Record, Trace};
 use crate::world::{Reachable, World};
 
 /// What is written down while a run goes on.

@@ -9,10 +9,10 @@ use crate::baselines::{Bmilrv, Marks};
 use crate::fleet::{Fleet, Rules};
 use crate::medium;
 use crate::planners::{PlannerKind, Setup};
+use crate::record::grid::Trace;
 use crate::scenario::ScenarioError;
 use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
-use crate::trace::Trace;
 
 /// How a scenario is run; changes nothing of what happens.
 #[derive(Default)]

@@ -8,7 +8,7 @@ use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
-use planner_core::surface::{Patch, Surface, clearance};
+use planner_core::surface::{Patch, Surface};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
 
@@ -16,10 +16,10 @@ use crate::baselines::surveys::{Follower, Guide, Rounds, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_point, surface_frame};
 use crate::record::Deed;
+use crate::record::heights::{Record, Trace};
 use crate::robot::Sent;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::scenario::{Conditions, Event, Faults, MediumKind, ScenarioError};
-use crate::survey::{Record, Safety, Trace};
 use crate::terrain::{Terrain, look};
 
 /// Takes the chance of sleep apart from that of the air: "sleep".
@@ -515,37 +515,6 @@ impl<const T: usize> Simulation<T> {
         self.trace
             .safety
             .check_separation(&self.scenario.limits, &alive);
-    }
-}
-
-/// Rounding that a planner's f32 arithmetic may be off by.
-const TOLERANCE: f32 = 1e-3;
-
-impl Safety {
-    pub(crate) fn check_flight(
-        &mut self,
-        terrain: &Terrain,
-        limits: &Limits,
-        from: Point,
-        to: Point,
-    ) {
-        let least = clearance(from, to, |cell| terrain.height(cell));
-        self.altitude_violations += u32::from(
-            to.z > limits.ceiling + TOLERANCE
-                || least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
-        );
-        self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
-        self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
-    }
-
-    /// Given where the living robots are.
-    pub(crate) fn check_separation(&mut self, limits: &Limits, alive: &[Point]) {
-        for (i, a) in alive.iter().enumerate() {
-            for b in &alive[i + 1..] {
-                let near = a.distance(*b) < limits.separation - TOLERANCE;
-                self.separation_violations += u32::from(near);
-            }
-        }
     }
 }
 

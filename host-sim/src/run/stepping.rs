@@ -11,10 +11,10 @@ use super::grid::fleet_on;
 use super::{Host, Outcome, Progress};
 use crate::fleet::Fleet;
 use crate::medium::Message;
+use crate::record::grid::{Record, Trace};
 use crate::robot::{Robot, Step};
 use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
-use crate::trace::{Record, Trace};
 
 /// A run between two ticks, on maps of `TW`×`TH` tiles.
 pub struct Running<const TW: usize, const TH: usize> {

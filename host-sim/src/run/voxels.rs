@@ -12,12 +12,12 @@ use planner_core::{Action, ExtentError, RobotId};
 
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
-use crate::record::Deed;
+use crate::record::voxels::{Record, VoxelTrace};
+use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
 use crate::scenario::voxels::Scenario;
 use crate::scenario::{Faults, MediumKind, ScenarioError};
 use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
-use crate::survey::voxels::{Record, VoxelTrace};
 
 type Planner = VoxelSurvey<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>;
 
@@ -358,6 +358,7 @@ impl Simulation {
             at: to,
             deed,
             goal: status.goal,
+            gain: Nothing {},
             known: robot.planner.volume().known_voxels(),
             work,
             sent: robot.sent,

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::{Deed, Safety, Trace};
+use crate::record::Deed;
+use crate::record::heights::{Safety, Trace};
 use crate::scenario::heights::Planner;
 use crate::scenario::{Event, MediumKind};
 

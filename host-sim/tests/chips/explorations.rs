@@ -6,10 +6,10 @@ use std::sync::Arc;
 use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::measured::{Call, Measured};
 use host_sim::planners::PlannerKind::{self, Explorer, LocalFrontiers, LocalFrontiersSecondChance};
+use host_sim::record::grid::Trace;
 use host_sim::run::{self, Options};
 use host_sim::scenario::MediumKind::{self, Ideal, Radio};
 use host_sim::scenario::grid::Scenario;
-use host_sim::trace::Trace;
 use host_sim::world::{Family, ReadOptions, Starts, World, generate, paper};
 
 use crate::{Largest, image};

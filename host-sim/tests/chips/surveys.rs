@@ -2,10 +2,10 @@
 
 use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::measured::{Call, Measured};
+use host_sim::record::heights::Trace;
 use host_sim::run::heights;
 use host_sim::scenario::Event;
 use host_sim::scenario::heights::{Planner, Scenario};
-use host_sim::survey::Trace;
 use host_sim::terrain::Terrain;
 
 use crate::{Largest, image};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use egui::Shape;
 use host_sim::draw::{animate, oblique_view, top_view};
+use host_sim::record::heights::{Record, Trace};
 use host_sim::run::heights::{self, Stepping};
-use host_sim::survey::{Record, Trace};
 use host_sim::terrain::{Terrain, TerrainSource};
 use image::RgbImage;
 use planner_core::{Cell, Extent, Point};

@@ -5,10 +5,10 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use host_sim::record::heights::Trace;
+use host_sim::record::voxels::VoxelTrace;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{Conditions, MediumKind, voxels};
-use host_sim::survey::Trace;
-use host_sim::survey::voxels::VoxelTrace;
 use host_sim::terrain::TerrainSource;
 
 /// Numbers of drones.

@@ -1,10 +1,10 @@
 //! Towns of voxels: streets, rooms, bridges, cube by cube.
 
 use egui::Shape;
-use host_sim::draw::animate;
+use host_sim::draw::{animate, oblique_voxels};
+use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::voxels::Simulation;
 use host_sim::scene::Scene;
-use host_sim::survey::voxels::VoxelTrace;
 use image::RgbImage;
 use planner_core::volume::Voxel;
 use planner_core::{Extent, Point};
@@ -187,14 +187,14 @@ impl Flight for Voxels {
     }
 
     fn picture(&self, steps: u32) -> RgbImage {
-        self.trace().oblique_view(steps)
+        oblique_voxels(self.trace(), steps)
     }
 
     fn animation(&self) -> Result<Vec<u8>, String> {
         let trace = self.trace();
         let steps = trace.seen.len() as u32;
         let mut gif = Vec::new();
-        animate(steps, |step| trace.oblique_view(step), &mut gif)
+        animate(steps, |step| oblique_voxels(trace, step), &mut gif)
             .map_err(|error| error.to_string())?;
         Ok(gif)
     }

@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use super::Drawn;
 use crate::draw::chart::{Point, Series, Style};
 use crate::experiments::{Interval, mean};
+use crate::record::heights::Trace;
 use crate::run::heights::run;
 use crate::scenario::MediumKind;
 use crate::scenario::ScenarioError;
 use crate::scenario::heights::{Planner, Scenario};
-use crate::survey::Trace;
 use crate::terrain::Terrain;
 
 /// The methods that are compared, in the order of the legends.

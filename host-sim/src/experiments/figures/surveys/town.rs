@@ -9,7 +9,6 @@ use crate::scenario::ScenarioError;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::scenario::voxels::Scenario as VoxelScenario;
 use crate::scene::Scene;
-use crate::survey::octree;
 use crate::terrain::Terrain;
 
 /// Nodes of the octree of what is mapped, every tenth step.
@@ -36,7 +35,7 @@ pub(super) fn town() -> Result<Drawn, ScenarioError> {
     for planner in [Planner::CoordinatedSurvey, Planner::Fcao] {
         let trace = run(&terrain, &Scenario::new(planner, 2, 1))?;
         let end = trace.ticks_to(1.0).unwrap_or(trace.seen.len() as u32);
-        let nodes = |tick| octree(&trace, tick).nodes();
+        let nodes = |tick| trace.octree(tick).nodes();
         heights.push(curve(planner.to_string(), colour(planner), end, &nodes));
     }
     let trace = voxels::run(&Scene::town(1, VOXELS), &VoxelScenario::new(2, 1))?;

@@ -12,8 +12,8 @@ mod file;
 
 use planner_core::{Cell, Direction, Reason};
 
-use crate::record;
-use crate::robot::{Deed, Robot, Sent, Step};
+use crate::record::{self, Format, Kind, Nothing, action_of, reason_of};
+use crate::robot::{Deed, Robot, Step};
 use crate::scenario::grid::Scenario;
 
 /// A scenario and all that its robots did.
@@ -25,48 +25,24 @@ pub struct Trace {
     pub records: Vec<Record>,
 }
 
-/// What one robot did in one tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Record {
-    /// Tick, from 0.
-    pub tick: u32,
-    /// Id of the robot.
-    pub robot: u8,
-    /// Where it stood, looked and decided.
-    pub at: Cell,
-    /// What came of its decision. In the file and the digest 0 to 3: moved east, south,
-    /// west, north; 4 to 7: tried to, and was blocked; 8 to 11: and was held by a robot
-    /// that goes first; 12 to 15: and exchanged roles with the robot there. 16: waited; 17:
-    /// gave its role away before it had acted; 18 to 21: turned its sensor to the east,
-    /// south, west, north. From 32 on: had stopped, 32 and
-    /// [`Stop::code`](planner_core::Stop::code).
-    pub deed: Deed<Reason>,
-    /// Where it was going; in the file and the digest -1, -1 for nowhere.
-    pub goal: Option<Cell>,
-    /// Cells on its map, obstacles included.
-    pub known: u32,
-    /// Work of its planner in this tick.
-    pub work: u32,
-    /// What it sent by radio in this tick.
-    pub sent: Sent,
-}
+/// What one robot did in one tick: `at` is where it stood, looked and decided.
+pub type Record = record::Record<Grid>;
 
-record::row!(
-    /// A record in the file.
-    Row {
-        tick: u32,
-        robot: u8,
-        x: i16,
-        y: i16,
-        action: u8,
-        goal_x: i16,
-        goal_y: i16,
-        known: u32,
-        work: u32,
-        frames: u32,
-        bytes: u32,
-    }
-);
+/// Records of robots in a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grid;
+
+impl Kind for Grid {
+    const FORMAT: Format = Format {
+        name: "host-sim trace",
+        version: 2,
+        oldest: 2,
+    };
+    type Place = Cell;
+    type Deed = Deed<Reason>;
+    type Goal = Cell;
+    type Gain = Nothing;
+}
 
 const BLOCKED: u8 = 4;
 const HELD: u8 = 8;
@@ -74,25 +50,51 @@ const EXCHANGED: u8 = 12;
 const WAITED: u8 = 16;
 const YIELDED: u8 = 17;
 const LOOKED: u8 = 18;
-const NOWHERE: Cell = Cell::new(-1, -1);
+/// A look to the north.
+const LAST_ACT: u8 = LOOKED + 3;
 
-impl Deed<Reason> {
-    fn action(self) -> u8 {
-        match self {
-            Self::Moved(to) => to as u8,
-            Self::Blocked(to) => BLOCKED + to as u8,
-            Self::Held(to) => HELD + to as u8,
-            Self::Exchanged(to) => EXCHANGED + to as u8,
-            Self::Waited => WAITED,
-            Self::Yielded => YIELDED,
-            Self::Looked(to) => LOOKED + to as u8,
-            Self::Stopped(reason) => record::action_of(reason),
+/// What is written down of why a robot had stopped.
+impl From<Deed> for Deed<Reason> {
+    fn from(deed: Deed) -> Self {
+        match deed {
+            Deed::Moved(to) => Self::Moved(to),
+            Deed::Blocked(to) => Self::Blocked(to),
+            Deed::Held(to) => Self::Held(to),
+            Deed::Exchanged(to) => Self::Exchanged(to),
+            Deed::Yielded => Self::Yielded,
+            Deed::Waited => Self::Waited,
+            Deed::Looked(to) => Self::Looked(to),
+            Deed::Stopped(stop) => Self::Stopped(stop.reason()),
         }
     }
+}
 
-    fn of_action(action: u8) -> Option<Self> {
+/// The action in files and digests: 0 to 3 moved east, south, west, north; 4 to 7 tried to,
+/// and was blocked; 8 to 11 and was held by a robot that goes first; 12 to 15 and exchanged
+/// roles with the robot there; 16 waited; 17 gave its role away before it had acted; 18 to
+/// 21 turned its sensor to the east, south, west, north; from 32 on had stopped, 32 and
+/// [`Reason::code`].
+impl From<Deed<Reason>> for u8 {
+    fn from(deed: Deed<Reason>) -> Self {
+        match deed {
+            Deed::Moved(to) => to as u8,
+            Deed::Blocked(to) => BLOCKED + to as u8,
+            Deed::Held(to) => HELD + to as u8,
+            Deed::Exchanged(to) => EXCHANGED + to as u8,
+            Deed::Waited => WAITED,
+            Deed::Yielded => YIELDED,
+            Deed::Looked(to) => LOOKED + to as u8,
+            Deed::Stopped(reason) => action_of(reason),
+        }
+    }
+}
+
+impl TryFrom<u8> for Deed<Reason> {
+    type Error = String;
+
+    fn try_from(action: u8) -> Result<Self, String> {
         let to = |first| Direction::from_index(action - first);
-        Some(match action {
+        Ok(match action {
             0..BLOCKED => Self::Moved(to(0)),
             BLOCKED..HELD => Self::Blocked(to(BLOCKED)),
             HELD..EXCHANGED => Self::Held(to(HELD)),
@@ -100,13 +102,10 @@ impl Deed<Reason> {
             WAITED => Self::Waited,
             YIELDED => Self::Yielded,
             LOOKED..=LAST_ACT => Self::Looked(to(LOOKED)),
-            _ => Self::Stopped(record::reason_of(action)?),
+            _ => Self::Stopped(reason_of(action, LAST_ACT)?),
         })
     }
 }
-
-/// The last action of a robot that has not stopped: a look to the north.
-const LAST_ACT: u8 = LOOKED + 3;
 
 impl Record {
     /// What `robot` did in `tick`.
@@ -119,8 +118,9 @@ impl Record {
             tick,
             robot: robot.id.0,
             at: step.at,
-            deed: step.deed.in_short(),
+            deed: step.deed.into(),
             goal: robot.planner.status().goal,
+            gain: Nothing {},
             known: robot.planner.map().known_cells(),
             work: step.work,
             sent: step.sent,
@@ -140,23 +140,6 @@ impl Record {
             | Deed::Stopped(_) => self.at,
         }
     }
-
-    fn row(&self) -> Row {
-        let goal = self.goal.unwrap_or(NOWHERE);
-        Row {
-            tick: self.tick,
-            robot: self.robot,
-            x: self.at.x,
-            y: self.at.y,
-            action: self.deed.action(),
-            goal_x: goal.x,
-            goal_y: goal.y,
-            known: self.known,
-            work: self.work,
-            frames: self.sent.frames,
-            bytes: self.sent.bytes,
-        }
-    }
 }
 
 impl Trace {
@@ -169,7 +152,7 @@ impl Trace {
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        record::digest(self.records.iter().map(Record::row))
+        record::digest(&self.records)
     }
 
     /// Number of ticks that were run.

@@ -5,92 +5,43 @@
 //! columns are the fields of a [`Record`]. Version 1 had the reasons 33 and 39 the other
 //! way round.
 
+mod mapped;
 mod read;
 
 use std::io;
 
-use planner_core::surface::Column;
+use planner_core::surface::{Column, clearance};
 use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point, Stop};
 use serde::{Deserialize, Serialize};
 
-use crate::record::{self, Deed, Format};
-use crate::robot::Sent;
+use crate::record::{self, Deed, Format, Kind};
 use crate::scenario::Conditions;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::terrain::Terrain;
 
-const FORMAT: Format = Format {
-    name: "host-sim survey trace",
-    version: 2,
-    oldest: 1,
-};
+/// One decision of one robot: `at` is where it was after it, `goal` the frontier that it
+/// announced.
+pub type Record = record::Record<Heights>;
 
-/// One decision of one robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record {
-    /// In which step, from 0.
-    pub tick: u32,
-    /// Whose.
-    pub robot: u8,
-    /// Where the robot is after it.
-    pub at: Point,
-    /// What became of it; in the file and the digest 0 flew, 1 refused, 2 hovered, from
-    /// 32 on had stopped: 32 and [`Stop::code`].
-    pub deed: Deed,
-    /// The frontier that it announces; in the file and the digest -1, -1 for none.
-    pub goal: Option<Cell>,
-    /// What the robot's last step added to its reward [Renzaglia2019 eq. 1].
-    pub gain: f32,
-    /// Columns on its map.
-    pub known: u32,
-    /// Work of the decision, as the planner counts it.
-    pub work: u32,
-    /// What it sent by radio in this step.
-    pub sent: Sent,
+/// Records of robots over heights.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Heights;
+
+impl Kind for Heights {
+    const FORMAT: Format = Format {
+        name: "host-sim survey trace",
+        version: 2,
+        oldest: 1,
+    };
+    type Place = Point;
+    type Deed = Deed;
+    type Goal = Cell;
+    type Gain = f32;
 }
 
-record::row!(
-    /// A record in the file.
-    Row {
-        tick: u32,
-        robot: u8,
-        x: f32,
-        y: f32,
-        z: f32,
-        action: u8,
-        goal_x: i16,
-        goal_y: i16,
-        gain: f32,
-        known: u32,
-        work: u32,
-        frames: u32,
-        bytes: u32,
-    }
-);
-
-const NOWHERE: Cell = Cell::new(-1, -1);
-
-impl Record {
-    fn row(&self) -> Row {
-        let goal = self.goal.unwrap_or(NOWHERE);
-        Row {
-            tick: self.tick,
-            robot: self.robot,
-            x: self.at.x,
-            y: self.at.y,
-            z: self.at.z,
-            action: self.deed.action(),
-            goal_x: goal.x,
-            goal_y: goal.y,
-            gain: self.gain,
-            known: self.known,
-            work: self.work,
-            frames: self.sent.frames,
-            bytes: self.sent.bytes,
-        }
-    }
-}
+/// Rounding that a planner's f32 arithmetic may be off by.
+const TOLERANCE: f32 = 1e-3;
 
 /// Steps at which something happened that never should.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -106,6 +57,32 @@ pub struct Safety {
 }
 
 impl Safety {
+    pub(crate) fn check_flight(
+        &mut self,
+        terrain: &Terrain,
+        limits: &Limits,
+        from: Point,
+        to: Point,
+    ) {
+        let least = clearance(from, to, |cell| terrain.height(cell));
+        self.altitude_violations += u32::from(
+            to.z > limits.ceiling + TOLERANCE
+                || least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
+        );
+        self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
+        self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
+    }
+
+    /// Given where the living robots are.
+    pub(crate) fn check_separation(&mut self, limits: &Limits, alive: &[Point]) {
+        for (i, a) in alive.iter().enumerate() {
+            for b in &alive[i + 1..] {
+                let near = a.distance(*b) < limits.separation - TOLERANCE;
+                self.separation_violations += u32::from(near);
+            }
+        }
+    }
+
     /// All of them.
     pub fn violations(&self) -> u32 {
         self.altitude_violations
@@ -211,13 +188,12 @@ impl Trace {
     /// # Errors
     /// Those of `to`.
     pub fn write(&self, to: impl io::Write) -> io::Result<()> {
-        let rows = self.records.iter().map(Record::row);
-        record::write(to, FORMAT, &Header::of(self), rows)
+        record::write(to, &Header::of(self), &self.records)
     }
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        record::digest(self.records.iter().map(Record::row))
+        record::digest(&self.records)
     }
 }
 
@@ -233,11 +209,11 @@ struct Header {
     /// Of each robot at the end; older traces have none.
     #[serde(default)]
     stops: Vec<Option<Stop>>,
-    world: Heights,
+    world: Ground,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Heights {
+struct Ground {
     name: String,
     /// In quarters of a cell, row by row.
     heights: Vec<Vec<u8>>,
@@ -253,12 +229,12 @@ impl Header {
             conditions: scenario.conditions.clone(),
             starts: trace.starts.iter().map(|p| [p.x, p.y, p.z]).collect(),
             stops: trace.stops.clone(),
-            world: Heights::of(&trace.terrain),
+            world: Ground::of(&trace.terrain),
         }
     }
 }
 
-impl Heights {
+impl Ground {
     fn of(terrain: &Terrain) -> Self {
         let Extent { width, height } = terrain.extent();
         let row = |y| {

@@ -1,13 +1,15 @@
 //! What a run among voxels leaves behind.
 
-use planner_core::volume::Voxel;
-use planner_core::{Point, Stop};
+use planner_core::Stop;
+mod file;
 
-use super::Record;
-use crate::draw::{Block, oblique};
+use planner_core::volume::Voxel;
+
 use crate::scenario::voxels::Scenario;
 use crate::scene::Scene;
 use crate::scene::octree::OcTree;
+
+pub use file::{Record, Voxels};
 
 /// A whole run.
 #[derive(Clone, Debug)]
@@ -58,23 +60,5 @@ impl VoxelTrace {
             tree.insert([voxel.x, voxel.y, voxel.z].map(i32::from), *occupied);
         }
         tree
-    }
-
-    /// What had been seen after `tick` steps, with the ways flown.
-    pub fn oblique_view(&self, tick: u32) -> image::RgbImage {
-        let known = self.found.iter().take_while(|found| found.0 <= tick);
-        let blocks = known.filter(|found| found.2).map(|(_, voxel, _)| Block {
-            cell: voxel.cell(),
-            bottom: f32::from(voxel.z),
-            top: f32::from(voxel.z) + 1.0,
-        });
-        let point = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
-        let ways: Vec<Vec<Point>> = self
-            .ways
-            .iter()
-            .map(|way| way.iter().take(tick as usize + 1).map(point).collect())
-            .collect();
-        let highest = f32::from(self.scene.levels());
-        oblique(self.scene.extent(), highest, blocks.collect(), &ways)
     }
 }

@@ -13,17 +13,10 @@ use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
 use super::VoxelTrace;
-use crate::record::{self, Deed, Format, Objection, Order, TraceError, wrong};
-use crate::robot::Sent;
+use crate::record::{self, Deed, Format, Kind, Nothing, Objection, Order, TraceError, wrong};
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
 use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
-
-const FORMAT: Format = Format {
-    name: "host-sim voxel trace",
-    version: 2,
-    oldest: 2,
-};
 
 /// Most steps without a record, all together.
 const MOST_EMPTY_STEPS: u32 = 10_000;
@@ -44,100 +37,39 @@ struct Levels {
     levels: Vec<Vec<String>>,
 }
 
-/// One decision of one robot.
+/// One decision of one robot: `at` is where it was after it, `goal` the pose that it
+/// announced.
+pub type Record = record::Record<Voxels>;
+
+/// Records of robots among voxels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Record {
-    /// In which step, from 0.
-    pub tick: u32,
-    /// Whose.
-    pub robot: u8,
-    /// Where the robot is after it.
-    pub at: Voxel,
-    /// What became of it; in the file and the digest a number as in traces over heights.
-    pub deed: Deed,
-    /// The pose that it announces; in the file and the digest -1, -1, -1 for none.
-    pub goal: Option<Voxel>,
-    /// Voxels on its map.
-    pub known: u32,
-    /// Work of the decision, as the planner counts it.
-    pub work: u32,
-    /// What it sent by radio in this step.
-    pub sent: Sent,
+pub struct Voxels;
+
+impl Kind for Voxels {
+    const FORMAT: Format = Format {
+        name: "host-sim voxel trace",
+        version: 2,
+        oldest: 2,
+    };
+    type Place = Voxel;
+    type Deed = Deed;
+    type Goal = Voxel;
+    type Gain = Nothing;
 }
 
-record::row!(
-    /// A record in the file.
-    Row {
-        tick: u32,
-        robot: u8,
-        x: i16,
-        y: i16,
-        z: i16,
-        action: u8,
-        goal_x: i16,
-        goal_y: i16,
-        goal_z: i16,
-        known: u32,
-        work: u32,
-        frames: u32,
-        bytes: u32,
-    }
-);
-
-const NOWHERE: Voxel = Voxel::new(-1, -1, -1);
-
-impl Record {
-    fn row(&self) -> Row {
-        let goal = self.goal.unwrap_or(NOWHERE);
-        Row {
-            tick: self.tick,
-            robot: self.robot,
-            x: self.at.x,
-            y: self.at.y,
-            z: self.at.z,
-            action: self.deed.action(),
-            goal_x: goal.x,
-            goal_y: goal.y,
-            goal_z: goal.z,
-            known: self.known,
-            work: self.work,
-            frames: self.sent.frames,
-            bytes: self.sent.bytes,
+/// # Errors
+/// A place outside of `scene`.
+fn check(record: &Record, scene: &Scene) -> Result<(), Objection> {
+    let places = [("a position", Some(record.at)), ("a goal", record.goal)];
+    for (name, place) in places {
+        if let Some(voxel @ Voxel { x, y, z }) = place
+            && scene.is_occupied(voxel).is_none()
+        {
+            let expected = format!("{name} in the scene");
+            return Err(wrong(expected, format!("{x},{y},{z}")));
         }
     }
-
-    /// The record in a row.
-    ///
-    /// # Errors
-    /// What no run in `scene` leaves.
-    fn of(row: Row, scene: &Scene) -> Result<Self, Objection> {
-        let place = |name: &str, voxel: Voxel| match scene.is_occupied(voxel) {
-            Some(_) => Ok(voxel),
-            None => {
-                let Voxel { x, y, z } = voxel;
-                Err(wrong(
-                    format!("{name} in the scene"),
-                    format!("{x},{y},{z}"),
-                ))
-            }
-        };
-        let deed = Deed::of_action(row.action).ok_or_else(|| wrong(Deed::actions(), row.action))?;
-        let goal = Some(Voxel::new(row.goal_x, row.goal_y, row.goal_z));
-        let goal = goal.filter(|&goal| goal != NOWHERE);
-        Ok(Self {
-            tick: row.tick,
-            robot: row.robot,
-            at: place("a position", Voxel::new(row.x, row.y, row.z))?,
-            deed,
-            goal: goal.map(|goal| place("a goal", goal)).transpose()?,
-            known: row.known,
-            work: row.work,
-            sent: Sent {
-                frames: row.frames,
-                bytes: row.bytes,
-            },
-        })
-    }
+    Ok(())
 }
 
 impl VoxelTrace {
@@ -154,8 +86,7 @@ impl VoxelTrace {
             stops: self.stops.clone(),
             world: Levels::of(&self.scene),
         };
-        let rows = self.records.iter().map(Record::row);
-        record::write(to, FORMAT, &header, rows)
+        record::write(to, &header, &self.records)
     }
 
     /// Reads a trace, and checks that it is whole.
@@ -165,7 +96,7 @@ impl VoxelTrace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (header, lines) = record::read::<Header, Row>(from, FORMAT)?;
+        let (_, header, records) = record::read::<Header, Voxels>(from)?;
         let (scene, scenario) = (header.world.scene()?, header.scenario);
         scenario.check(&scene)?;
         let robots = scenario.robots;
@@ -190,15 +121,15 @@ impl VoxelTrace {
             last: None,
         };
         let mut empty_steps = 0u32;
-        let records = lines.records(|row| {
+        record::check(&records, |record| {
             let next = order.last.map_or(0, |(last, _)| last.saturating_add(1));
-            order.take(row.tick, row.robot)?;
-            empty_steps = empty_steps.saturating_add(row.tick.saturating_sub(next));
+            order.take(record)?;
+            empty_steps = empty_steps.saturating_add(record.tick.saturating_sub(next));
             if empty_steps > MOST_EMPTY_STEPS {
                 let expected = format!("at most {MOST_EMPTY_STEPS} steps without a record");
-                return Err(wrong(expected, format!("tick {}", row.tick)));
+                return Err(wrong(expected, format!("tick {}", record.tick)));
             }
-            Record::of(row, &scene)
+            check(record, &scene)
         })?;
         let mut trace = Self {
             ways: starts.into_iter().map(|start| vec![start]).collect(),
@@ -268,7 +199,7 @@ impl VoxelTrace {
 
     /// 16 hex digits that differ if any record does.
     pub fn digest(&self) -> String {
-        record::digest(self.records.iter().map(Record::row))
+        record::digest(&self.records)
     }
 }
 

@@ -1,10 +1,9 @@
 //! Whether records can be those of a run, before anything is drawn from them.
 
-use planner_core::{Cell, Reason};
+use planner_core::Cell;
 
-use super::{LAST_ACT, NOWHERE, Record, Row};
-use crate::record::{Objection, Order, action_of, last_action, wrong};
-use crate::robot::{Deed, Sent};
+use super::Record;
+use crate::record::{Objection, Order, wrong};
 use crate::scenario::grid::Scenario;
 
 /// Most ticks without a record, all together: every robot is dead or still to come.
@@ -38,40 +37,21 @@ impl<'a> Checked<'a> {
     ///
     /// # Errors
     /// What no run leaves.
-    pub(super) fn take(&mut self, row: Row) -> Result<Record, Objection> {
+    pub(super) fn take(&mut self, record: &Record) -> Result<(), Objection> {
         let extent = self.scenario.world.extent();
         let inside = || format!("inside the world of {extent} cells");
         let next = self
             .order
             .last
             .map_or(0, |(last, _)| last.saturating_add(1));
-        self.order.take(row.tick, row.robot)?;
-        self.check_gap(next, row.tick)?;
-        let Some(deed) = Deed::of_action(row.action) else {
-            let (first, last) = (action_of(Reason::Complete), last_action());
-            let expected = format!("an action, 0 to {LAST_ACT} or {first} to {last}");
-            return Err(wrong(expected, row.action));
-        };
-        let goal = Cell::new(row.goal_x, row.goal_y);
-        let record = Record {
-            tick: row.tick,
-            robot: row.robot,
-            at: Cell::new(row.x, row.y),
-            deed,
-            goal: (goal != NOWHERE).then_some(goal),
-            known: row.known,
-            work: row.work,
-            sent: Sent {
-                frames: row.frames,
-                bytes: row.bytes,
-            },
-        };
+        self.order.take(record)?;
+        self.check_gap(next, record.tick)?;
         if !extent.contains(record.at) {
             return Err(wrong(format!("a robot {}", inside()), record.at));
         }
-        let position = &mut self.positions[usize::from(row.robot)];
+        let position = &mut self.positions[usize::from(record.robot)];
         if record.at != *position {
-            let expected = format!("robot {} at {position}, where it was", row.robot);
+            let expected = format!("robot {} at {position}, where it was", record.robot);
             return Err(wrong(expected, record.at));
         }
         if !extent.contains(record.after()) {
@@ -87,7 +67,7 @@ impl<'a> Checked<'a> {
             let expected = format!("at most {} known cells", extent.cells());
             return Err(wrong(expected, record.known));
         }
-        Ok(record)
+        Ok(())
     }
 
     /// Ticks without a record, from `next` on, end where somebody comes.

@@ -7,19 +7,13 @@ use planner_core::{Cell, Extent};
 use serde::{Deserialize, Serialize};
 
 use super::check::Checked;
-use super::{Record, Row, Trace};
+use super::{Grid, Trace};
 use crate::planners::PlannerKind;
-use crate::record::{self, Format, TraceError};
+use crate::record::{self, TraceError};
 use crate::scenario::Conditions;
 use crate::scenario::grid::Scenario;
 use crate::sensor::ALL_AROUND;
 use crate::world::World;
-
-const FORMAT: Format = Format {
-    name: "host-sim trace",
-    version: 2,
-    oldest: 2,
-};
 
 #[derive(Serialize, Deserialize)]
 struct Header {
@@ -55,8 +49,7 @@ impl Trace {
     /// # Errors
     /// Those of `to`.
     pub fn write(&self, to: impl Write) -> io::Result<()> {
-        let rows = self.records.iter().map(Record::row);
-        record::write(to, FORMAT, &Header::of(self), rows)
+        record::write(to, &Header::of(self), &self.records)
     }
 
     /// Reads a trace, and checks that it is whole and that a run can have left it:
@@ -65,10 +58,10 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (header, lines) = record::read::<Header, Row>(from, FORMAT)?;
+        let (_, header, records) = record::read::<Header, Grid>(from)?;
         let scenario = header.scenario()?;
         let mut checked = Checked::new(&scenario);
-        let records = lines.records(|row| checked.take(row))?;
+        record::check(&records, |record| checked.take(record))?;
         Ok(Self { scenario, records })
     }
 }

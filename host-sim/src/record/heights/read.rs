@@ -6,19 +6,14 @@ use std::io::BufRead;
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent, Point, Reason, RobotId};
 
-use super::{FORMAT, Header, Heights, NOWHERE, Record, Row, Trace};
-use crate::record::{self, Deed, Objection, Order, TraceError, action_of, wrong};
-use crate::robot::Sent;
+use super::{Ground, Header, Heights, Record, Trace};
+use crate::record::{self, Deed, Objection, Order, TraceError, wrong};
 use crate::scenario::heights::Scenario;
 use crate::terrain::{LARGEST, Terrain, look};
 
 /// Steps of the longest run that is read: a step without a record is one in which all
 /// robots slept, and a file may claim any number of them.
 const MOST_STEPS: u32 = 10_000_000;
-
-/// Two actions that version 1 had the other way round.
-const UNSEEN: u8 = action_of(Reason::Unseen);
-const ENCLOSED: u8 = action_of(Reason::Enclosed);
 
 /// Rounding that a position may be beyond the box by.
 const TOLERANCE: f32 = 1e-3;
@@ -33,7 +28,10 @@ impl Trace {
     /// # Errors
     /// What is wrong, and in which line.
     pub fn read(from: impl BufRead) -> Result<Self, TraceError> {
-        let (mut header, lines) = record::read::<Header, Row>(from, FORMAT)?;
+        let (version, mut header, mut records) = record::read::<Header, Heights>(from)?;
+        if version == 1 {
+            records.iter_mut().for_each(rename);
+        }
         let stops = std::mem::take(&mut header.stops);
         let mut replay = Replay::new(header)?;
         let mut order = Order {
@@ -41,10 +39,9 @@ impl Trace {
             end: replay.trace.scenario.conditions.max_ticks.min(MOST_STEPS),
             last: None,
         };
-        let version = lines.version;
-        let records = lines.records(|row| {
-            order.take(row.tick, row.robot)?;
-            replay.record(row, version)
+        record::check(&records, |record| {
+            order.take(record)?;
+            replay.check(record)
         })?;
         for step in records.chunk_by(|a, b| a.tick == b.tick) {
             replay.step(step);
@@ -61,6 +58,15 @@ impl Trace {
         trace.records = records;
         Ok(trace)
     }
+}
+
+/// Version 1 had two reasons the other way round.
+fn rename(record: &mut Record) {
+    record.deed = match record.deed {
+        Deed::Stopped(Reason::Unseen) => Deed::Stopped(Reason::Enclosed),
+        Deed::Stopped(Reason::Enclosed) => Deed::Stopped(Reason::Unseen),
+        deed => deed,
+    };
 }
 
 /// A run whose decisions are known.
@@ -123,39 +129,12 @@ impl Replay {
         format!("the box from 0,0,0 to {width},{height},{ceiling}")
     }
 
-    /// The record in a row.
-    ///
     /// # Errors
     /// What no run leaves.
-    fn record(&self, row: Row, version: u32) -> Result<Record, Objection> {
+    fn check(&self, record: &Record) -> Result<(), Objection> {
         let Trace {
             scenario, extent, ..
         } = &self.trace;
-        let action = match (version, row.action) {
-            (1, UNSEEN) => ENCLOSED,
-            (1, ENCLOSED) => UNSEEN,
-            (_, action) => action,
-        };
-        let deed = Deed::of_action(action).ok_or_else(|| wrong(Deed::actions(), row.action))?;
-        let goal = Cell::new(row.goal_x, row.goal_y);
-        let record = Record {
-            tick: row.tick,
-            robot: row.robot,
-            at: Point {
-                x: row.x,
-                y: row.y,
-                z: row.z,
-            },
-            deed,
-            goal: (goal != NOWHERE).then_some(goal),
-            gain: row.gain,
-            known: row.known,
-            work: row.work,
-            sent: Sent {
-                frames: row.frames,
-                bytes: row.bytes,
-            },
-        };
         let faults = &scenario.conditions.faults;
         if !faults.is_alive(RobotId(record.robot), record.tick) {
             let expected = format!("a robot that lives; robot {} does not", record.robot);
@@ -177,7 +156,7 @@ impl Replay {
             let expected = format!("at most {} known columns", extent.cells());
             return Err(wrong(expected, record.known));
         }
-        Ok(record)
+        Ok(())
     }
 
     /// One step of the fleet.
@@ -242,7 +221,7 @@ impl Replay {
     }
 }
 
-impl Heights {
+impl Ground {
     fn terrain(self) -> Result<Terrain, TraceError> {
         let rows = &self.heights;
         let (width, height) = (rows.first().map_or(0, Vec::len), rows.len());
@@ -279,7 +258,7 @@ mod tests {
         let mut trace = trace(Planner::Fcao);
         for (old, reason) in [(33, Reason::Unseen), (39, Reason::Enclosed)] {
             let last = trace.records.last_mut().unwrap();
-            last.deed = Deed::of_action(old).unwrap();
+            last.deed = Deed::try_from(old).unwrap();
             let file = text(&trace).replacen("\"version\":2", "\"version\":1", 1);
             let read = Trace::read(file.as_bytes()).unwrap();
             let last = read.records.last().unwrap();

@@ -19,6 +19,26 @@ pub(crate) fn insert<T, const N: usize>(list: &mut Vec<T, N>, place: usize, valu
     has_room
 }
 
+/// Puts `value` in its place in a list with the least number in front; of a full list the
+/// last one leaves, if it has a greater number. Says whether the value is in the list.
+pub(crate) fn keep_least<T, const N: usize>(
+    list: &mut Vec<(f32, T), N>,
+    number: f32,
+    value: T,
+) -> bool {
+    if list.is_full() {
+        if list.last().is_none_or(|last| number >= last.0) {
+            return false;
+        }
+        list.pop();
+    }
+    let place = list
+        .iter()
+        .take_while(|(least, _)| *least <= number)
+        .count();
+    insert(list, place, (number, value))
+}
+
 /// Puts `value` behind all others. Of a full list the first one leaves.
 pub(crate) fn push_out<T, const N: usize>(list: &mut Vec<T, N>, value: T) {
     if list.is_full()

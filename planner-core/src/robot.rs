@@ -11,16 +11,19 @@ use crate::cell::{Cell, Direction};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RobotId(pub u8);
 
-/// What the robot shall do now. Every [`Planner::tick`](crate::Planner::tick) returns one. `S` is a step: a
-/// direction on a grid, a point over a surface, a voxel; `P` a place, as in [`Stop`].
+/// What the robot shall do now. Every [`Planner::tick`](crate::Planner::tick) returns one.
+/// `S` is a step: a direction on a grid, a point over a surface, a voxel; `P` a place, as
+/// in [`Stop`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Action<S = Direction, P = Cell> {
-    /// Make this step; then [`Planner::report`](crate::Planner::report) how it went. On a grid it leads to the
-    /// neighbouring cell, in the air straight to a place at most one step away.
+    /// Make this step; then [`Planner::report`](crate::Planner::report) how it went. On a
+    /// grid it leads to the neighbouring cell, in the air straight to a place at most one
+    /// step away.
     Move(S),
-    /// Stand still for this tick. [`Planner::waiting`](crate::Planner::waiting) says why, and where to look.
+    /// Stay for this tick. [`Planner::waiting`](crate::Planner::waiting) says why, and
+    /// where to look.
     Wait,
     /// Done, for this reason. Every later tick returns the same, until
     /// [`Planner::resume`](crate::Planner::resume).

@@ -119,13 +119,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         let mut nearest: Vec<(f32, Point), NEIGHBOURS> = Vec::new();
         for peer in self.knowledge.rivals() {
             let at = peer.status.position;
-            let distance = here.plan_distance(at);
-            let place = nearest.iter().take_while(|near| near.0 <= distance).count();
-            if nearest.is_full() && place < NEIGHBOURS {
-                nearest.pop();
-            }
-            // Beyond the last place there is no room.
-            list::insert(&mut nearest, place, (distance, at));
+            list::keep_least(&mut nearest, here.plan_distance(at), at);
         }
         for &(_, at) in &nearest {
             vicinity.leave_to(at, here);

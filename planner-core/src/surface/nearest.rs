@@ -41,13 +41,15 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
                 let to_west = bits(west.reverse_bits()).map(|bit| 63 - bit as u8);
                 for x in to_east.take(N) {
                     work += 1;
-                    if !offer(&mut found, from, TileIndex { x, y }) {
+                    let tile = TileIndex { x, y };
+                    if !list::keep_least(&mut found, distance_to_tile(from, tile), tile) {
                         break;
                     }
                 }
                 for x in to_west.take(N) {
                     work += 1;
-                    if !offer(&mut found, from, TileIndex { x, y }) {
+                    let tile = TileIndex { x, y };
+                    if !list::keep_least(&mut found, distance_to_tile(from, tile), tile) {
                         break;
                     }
                 }
@@ -62,23 +64,6 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     pub fn next_frontier_tile(&self, tile: TileIndex) -> Option<TileIndex> {
         self.frontier_tiles.after(tile)
     }
-}
-
-/// Puts `tile` in its place if it is near enough; says whether it was.
-fn offer<const N: usize>(
-    found: &mut Vec<(f32, TileIndex), N>,
-    from: Point,
-    tile: TileIndex,
-) -> bool {
-    let distance = distance_to_tile(from, tile);
-    if found.is_full() {
-        if distance >= farthest(found) {
-            return false;
-        }
-        found.pop();
-    }
-    let place = found.iter().take_while(|(d, _)| *d <= distance).count();
-    list::insert(found, place, (distance, tile))
 }
 
 fn farthest<const N: usize>(found: &Vec<(f32, TileIndex), N>) -> f32 {

@@ -61,6 +61,7 @@ mod far;
 mod gain;
 mod near;
 mod news;
+mod rounds;
 
 use heapless::Vec;
 
@@ -69,8 +70,8 @@ use crate::radio::{
     FrameError, GridId, Hearsay, Key, LinkConfig, MAX_LEN, Roster, Sender, VoxelFrame,
 };
 use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
-use crate::tile::{TileIndex, every_tile};
-use crate::volume::{Content, Layer, Volume, Voxel, VoxelPatch};
+use crate::tile::TileIndex;
+use crate::volume::{Layer, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
 use far::Far;
 use news::News;
@@ -86,12 +87,6 @@ const SILENCE: u8 = 100;
 
 /// Steps without progress after which no rival counts any more.
 const PATIENCE: u16 = 512;
-
-/// How often closed voxels are tried again before they are taken to stay closed.
-const ROUNDS: u8 = 3;
-
-/// Steps of rest before the first of these; each time twice as many.
-const REST: u8 = 8;
 
 /// Own frames that are remembered, to know their echo: those of three steps.
 const ECHOES: usize = 32;
@@ -332,12 +327,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.far.reset();
     }
 
-    /// Nothing counts as closed any more.
-    fn open_all(&mut self) {
-        self.closed.reset();
-        self.is_closed = false;
-    }
-
     /// Nothing more is to be seen from `pose`.
     fn finish(&mut self, pose: Voxel) {
         if !self.done.get(pose) {
@@ -508,76 +497,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn wait(&mut self, reason: Wait) -> Action<Voxel, Voxel> {
         self.waiting = Maybe::Just(reason);
         Action::Wait
-    }
-
-    fn stop(&mut self, reason: Stop<Voxel>) -> Action<Voxel, Voxel> {
-        self.way.clear();
-        self.stopped = true;
-        self.reason = (reason, self.volume.known_voxels());
-        Action::Stop(reason)
-    }
-
-    /// Nothing is left to fly to: what is closed is tried again, or the robot stops.
-    fn end_round(&mut self) -> Action<Voxel, Voxel> {
-        let frontiers = self.volume.frontiers();
-        if self.is_closed {
-            let known = self.volume.known_voxels();
-            if known != self.round_known {
-                self.round_known = known;
-                self.round = 0;
-            }
-            if self.round >= ROUNDS {
-                let at = self.refused;
-                return self.stop(Stop::Blocked { frontiers, at });
-            }
-            self.rest = REST << self.round;
-            self.round = self.round.saturating_add(1);
-            self.open_all();
-            return self.wait(Wait::Closed);
-        }
-        let missed = if self.has_missed {
-            self.missed_place()
-        } else {
-            None
-        };
-        self.stop(match missed {
-            Some(at) => self.unseen(at),
-            None if frontiers == 0 => Stop::Complete,
-            None if self.sender.hearsay.cells > 0 => Stop::Enclosed { frontiers },
-            None => Stop::OutOfReach { frontiers },
-        })
-    }
-
-    const fn unseen(&self, at: Voxel) -> Stop<Voxel> {
-        Stop::Unseen {
-            frontiers: self.volume.frontiers(),
-            at,
-        }
-    }
-
-    /// The first voxel that a look should have shown, and that is still unknown.
-    ///
-    /// Cost: two words for each tile of a level.
-    fn missed_place(&self) -> Option<Voxel> {
-        self.first_of(|tile, z| self.missed.word(tile, z) & self.volume.unknown(tile, z))
-    }
-
-    /// An unknown voxel: beside the robot, or else the first beside a free one.
-    ///
-    /// Cost: 14 words for each tile of a level.
-    fn unknown_place(&self) -> Option<Voxel> {
-        let is_unknown = |voxel: &Voxel| self.volume.content(*voxel) == Content::Unknown;
-        let beside = self.position.beside();
-        beside
-            .into_iter()
-            .find(is_unknown)
-            .or_else(|| self.first_of(|tile, z| self.volume.unknown_beside_free(tile, z)))
-    }
-
-    fn first_of(&self, word: impl Fn(TileIndex, u8) -> u64) -> Option<Voxel> {
-        let mut tiles =
-            (0..self.volume.levels()).flat_map(|z| every_tile(TW, TH).map(move |tile| (tile, z)));
-        tiles.find_map(|(tile, z)| gain::voxels(tile, z, word(tile, z)).next())
     }
 
     /// Spends what a step on the way leaves over on poses anywhere that show nothing any

@@ -4,6 +4,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::volume::Content;
 use crate::volume::in_sight;
 
 const EXTENT: Extent = Extent::new(11, 10);

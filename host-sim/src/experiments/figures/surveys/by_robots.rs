@@ -34,20 +34,11 @@ pub(super) fn by_robots(terrains: u64) -> Result<Drawn, ScenarioError> {
             .and_then(|fleet| fleet.ticks(2))
             .map_or(f64::NAN, |i| i.mean)
     };
-    let mut csv = Csv::new([
-        "planner",
-        "robots",
-        "medium",
-        "loss",
-        "ticks_to_95",
-        "ticks_to_99",
-        "ticks_to_seen",
-        "half_interval",
-        "to_greedy",
-        "to_greedy_unique",
-        "mean_work",
-        "max_work",
-    ]);
+    let mut csv = Csv::new(
+        "planner,robots,medium,loss,ticks_to_95,ticks_to_99,\
+         ticks_to_seen,half_interval,to_greedy,to_greedy_unique,\
+         mean_work,max_work",
+    );
     for fleet in &rows {
         let Setup {
             planner,

@@ -24,13 +24,7 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Drawn {
         let mean = fleet.ticks(2).map(|interval| interval.at(number as f64));
         mean.into_iter().collect()
     };
-    let mut csv = Csv::new([
-        "planner",
-        "terrain",
-        "ticks_to_95",
-        "ticks_to_99",
-        "ticks_to_seen",
-    ]);
+    let mut csv = Csv::new("planner,terrain,ticks_to_95,ticks_to_99,ticks_to_seen");
     for fleet in fleets {
         for (terrain, run) in fleet.runs.iter().enumerate() {
             let [a, b, c] = run

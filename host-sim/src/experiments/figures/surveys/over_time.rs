@@ -16,7 +16,7 @@ pub(super) fn over_time(fleets: &[Fleet]) -> Drawn {
     };
     let seen = |fleet: &Fleet| fleet.curve(|run| &run.seen, true);
     let work = |fleet: &Fleet| fleet.curve(|run| &run.work, false);
-    let mut csv = Csv::new(["planner", "tick", "seen_percent", "work_per_decision"]);
+    let mut csv = Csv::new("planner,tick,seen_percent,work_per_decision");
     for fleet in fleets {
         for (seen, work) in seen(fleet).iter().zip(work(fleet)) {
             let planner = fleet.setup.planner;

@@ -15,7 +15,7 @@ use crate::terrain::Terrain;
 pub(super) fn town() -> Result<Drawn, ScenarioError> {
     const TOWN: u16 = 80;
     const VOXELS: u16 = 40;
-    let mut csv = Csv::new(["planner", "tick", "nodes"]);
+    let mut csv = Csv::new("planner,tick,nodes");
     let mut curve = |name: String, color, end: u32, nodes: &dyn Fn(u32) -> usize| {
         let ticks = (0..end).step_by(10).chain([end]);
         let points = ticks.map(|tick| {

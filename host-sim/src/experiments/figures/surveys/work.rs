@@ -8,7 +8,7 @@ use crate::scenario::ScenarioError;
 pub(super) fn work(terrains: u64) -> Result<Drawn, ScenarioError> {
     let sides = [60u16, 100, 150, 200];
     let fleets = [1usize, 2, 4, 8, 16];
-    let mut csv = Csv::new(["planner", "side", "robots", "mean_work", "max_work"]);
+    let mut csv = Csv::new("planner,side,robots,mean_work,max_work");
     let mut curves: [Vec<Series>; 2] = Default::default();
     for planner in METHODS {
         let mut measure = |setups: Vec<Setup>| -> Result<Series, ScenarioError> {

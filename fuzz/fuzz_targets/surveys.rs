@@ -12,7 +12,7 @@ use host_sim::scene::octree::OcTree;
 use host_sim::record::voxels::{self, VoxelTrace};
 use host_sim::record::Deed;
 use host_sim::record::heights::Trace;
-use host_sim::survey::Summary;
+use host_sim::summary::heights::Summary;
 use host_sim::terrain::Terrain;
 use libfuzzer_sys::fuzz_target;
 use planner_core::surface::Height;
@@ -69,7 +69,7 @@ fn tree(bytes: &[u8]) {
 fn heights<E>(read: Result<Trace, E>) {
     let Ok(trace) = read else { return };
     let summary = Summary::new(&trace);
-    assert!(summary.seen_cells <= summary.reachable_cells);
+    assert!(summary.head.seen_cells <= summary.head.reachable_cells);
     let ticks = trace.seen.len() as u32;
     let _ = draw::oblique_view(&trace, ticks / 2);
     let _ = draw::top_view(&trace, ticks);

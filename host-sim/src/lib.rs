@@ -35,6 +35,5 @@ pub mod scene;
 pub mod senses;
 pub mod sensor;
 pub mod summary;
-pub mod survey;
 pub mod terrain;
 pub mod world;

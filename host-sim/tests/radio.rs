@@ -35,13 +35,13 @@ fn summary(scenario: &Scenario) -> (Summary, Trace) {
 #[test]
 fn what_is_sent_stands_in_the_summary_and_in_the_trace() {
     let (summary, trace) = summary(&scenario(3));
-    assert!(summary.complete && summary.maps_agree);
+    assert!(summary.head.complete && summary.maps_agree);
     for (robot, id) in summary.robots.iter().zip(0..) {
         let sent = trace.records.iter().filter(|record| record.robot == id);
         let bytes: u32 = sent.clone().map(|record| record.sent.bytes).sum();
         let frames: u32 = sent.map(|record| record.sent.frames).sum();
         assert_eq!((robot.frames_sent, robot.bytes_sent), (frames, bytes));
-        assert_eq!(frames, summary.ticks, "one frame a tick");
+        assert_eq!(frames, summary.head.ticks, "one frame a tick");
         assert!((16 * frames..=52 * frames).contains(&bytes));
     }
 }
@@ -58,7 +58,7 @@ fn every_planner_explores_over_the_radio_and_hears_the_others() {
         let mut scenario = scenario(4);
         scenario.planner = planner;
         let (together, _) = summary(&scenario);
-        assert!(together.complete, "{planner}");
+        assert!(together.head.complete, "{planner}");
         scenario.conditions.sync = 0;
         let (alone, _) = summary(&scenario);
         assert_eq!(alone.robots[0].frames_sent, 0);
@@ -73,12 +73,12 @@ fn the_budget_and_the_interval_limit_what_is_sent() {
     scenario.conditions.byte_budget = 10;
     let (summary_of_10, _) = summary(&scenario);
     for robot in &summary_of_10.robots {
-        assert!(robot.frames_sent > 0 && robot.bytes_sent <= 10 * summary_of_10.ticks);
+        assert!(robot.frames_sent > 0 && robot.bytes_sent <= 10 * summary_of_10.head.ticks);
     }
     scenario.conditions.byte_budget = 55;
     scenario.conditions.sync = 4;
     let (every_fourth, _) = summary(&scenario);
-    let frames = every_fourth.ticks.div_ceil(4);
+    let frames = every_fourth.head.ticks.div_ceil(4);
     assert!(
         every_fourth
             .robots
@@ -141,7 +141,7 @@ fn late_robots_and_restarted_ones_learn_by_radio_what_they_missed() {
         known(150)
     );
     assert!(known(190) > known(149), "told again by the others");
-    assert!(summary.complete && summary.ticks > 150);
+    assert!(summary.head.complete && summary.head.ticks > 150);
     for robot in &summary.robots {
         assert_eq!(robot.cells_missed, 0);
     }

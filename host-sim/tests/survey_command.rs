@@ -89,7 +89,7 @@ fn what_does_not_apply_is_refused_by_its_name() {
     assert_refused(
         path,
         "--medium ideal --byte-budget 55",
-        &["--byte-budget", "ideal"],
+        &["--byte-budget", "--medium radio"],
     );
 }
 

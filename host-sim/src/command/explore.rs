@@ -143,7 +143,7 @@ impl Explore {
                 summary.planner, violation.tick, violation.robot.0, violation.into
             );
         }
-        if summary.complete {
+        if summary.head.complete {
             return Ok(ExitCode::SUCCESS);
         }
         eprintln!("{}", report::left(&summary));

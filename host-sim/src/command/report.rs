@@ -12,7 +12,7 @@ pub(super) fn print(summary: &Summary, out: &Path) {
         |ticks: Option<u32>| ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"));
     println!(
         "{}: {} of {} reachable cells seen",
-        summary.map, summary.seen_cells, summary.reachable_cells
+        summary.head.map, summary.head.seen_cells, summary.head.reachable_cells
     );
     if summary.unreachable_cells > 0 {
         println!(
@@ -20,15 +20,18 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             summary.unreachable_cells
         );
     }
-    println!("  everything seen    {}", ticks(summary.ticks_to_seen));
-    println!("  every robot done   {}", ticks(summary.ticks_to_stopped));
+    println!("  everything seen    {}", ticks(summary.head.ticks_to_seen));
+    println!(
+        "  every robot done   {}",
+        ticks(summary.head.ticks_to_stopped)
+    );
     println!(
         "  seen by several    {:.0} % of the seen cells",
         100.0 * summary.overlap
     );
     println!(
         "  most work          {} in one tick",
-        summary.max_work_per_tick
+        summary.head.max_work_per_tick
     );
     println!(
         "  maps agree         {}",
@@ -55,7 +58,7 @@ pub(super) fn print(summary: &Summary, out: &Path) {
     if let Some(measured) = &summary.firmware {
         print_measured(measured);
     }
-    println!("  trace digest       {}", summary.trace_digest);
+    println!("  trace digest       {}", summary.head.trace_digest);
     println!("  files in           {}", out.display());
 }
 
@@ -118,9 +121,9 @@ fn doubts(robot: &RobotSummary) -> Vec<String> {
 pub(super) fn left(summary: &Summary) -> String {
     let mut text = format!(
         "not complete: {} of {} reachable cells unseen after {} ticks",
-        summary.reachable_cells - summary.seen_cells,
-        summary.reachable_cells,
-        summary.ticks
+        summary.head.reachable_cells - summary.head.seen_cells,
+        summary.head.reachable_cells,
+        summary.head.ticks
     );
     for (number, robot) in summary.robots.iter().enumerate() {
         text += &format!("\n  robot {number}: {}", state(robot));

@@ -6,7 +6,6 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw::{Coverage, animate, oblique_view, oblique_voxels, top_view, write_png};
-use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::heights::open;
 use host_sim::run::voxels::Simulation;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -14,7 +13,9 @@ use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
 use host_sim::scene::Scene;
-use host_sim::survey::Summary;
+use host_sim::summary::Head;
+use host_sim::summary::heights::Summary;
+use host_sim::summary::voxels::Summary as VoxelSummary;
 use host_sim::terrain::TerrainSource;
 use indicatif::ProgressBar;
 use planner_core::survey::Limits;
@@ -115,17 +116,7 @@ impl Survey {
             true => println!("{json}"),
             false => print(&summary, &path),
         }
-        if summary.complete {
-            return Ok(ExitCode::SUCCESS);
-        }
-        eprintln!(
-            "not complete: {} of {} columns unseen after {} steps, {} violations",
-            summary.reachable_cells - summary.seen_cells,
-            summary.reachable_cells,
-            summary.ticks,
-            summary.violations
-        );
-        Ok(ExitCode::FAILURE)
+        Ok(ended(&summary.head, "columns", summary.violations))
     }
 
     /// The same in a scene of voxels.
@@ -141,33 +132,8 @@ impl Survey {
         }
         bar.finish_and_clear();
         let trace = run.finish();
-        let work = trace.records.iter().map(|record| record.work);
-        let robots: Vec<_> = (0..scenario.robots)
-            .map(|robot| voxel_robot(&trace, robot))
-            .collect();
-        let json = serde_json::json!({
-            "complete": trace.complete(),
-            "ticks_to_seen": trace.ticks_to(1.0),
-            "ticks_to_95": trace.ticks_to(0.95),
-            "ticks_to_99": trace.ticks_to(0.99),
-            "ticks_to_stopped": trace.all_stopped.then_some(trace.seen.len() - 1),
-            "ticks": trace.seen.len() - 1,
-            "reachable_cells": trace.visible,
-            "seen_cells": trace.seen.last(),
-            "max_work_per_tick": work.clone().max(),
-            "mean_work_per_tick": work.clone().map(f64::from).sum::<f64>() / work.len() as f64,
-            "violations": trace.violations,
-            "trace_digest": trace.digest(),
-            "map": scene.name(),
-            "planner": "voxel-survey",
-            "range": scenario.range,
-            "medium": scenario.conditions.medium,
-            "byte_budget": scenario.conditions.byte_budget,
-            "loss": scenario.conditions.loss,
-            "seed": scenario.conditions.seed,
-            "robots": robots,
-        });
-        let json = serde_json::to_string_pretty(&json)?;
+        let summary = VoxelSummary::new(&trace);
+        let json = serde_json::to_string_pretty(&summary)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
@@ -182,33 +148,11 @@ impl Survey {
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         let path = folder.path().to_path_buf();
         folder.close()?;
-        let seen = trace.seen.last().copied().unwrap_or(0);
-        if self.output.json {
-            println!("{json}");
-        } else {
-            let (name, visible) = (scene.name(), trace.visible);
-            println!("{name}: {seen} of {visible} visible voxels seen");
-            println!("  everything seen    {}", after(trace.ticks_to(1.0)));
-            println!("  violations         {}", trace.violations);
-            for (number, stop) in trace.stops.iter().enumerate() {
-                let stop = stop.map(|stop| stop.to_string());
-                let stop = stop.as_deref().unwrap_or("had not stopped");
-                println!("  robot {number:<12} {stop}");
-            }
-            println!("  trace digest       {}", trace.digest());
-            println!("  results            {}", path.display());
+        match self.output.json {
+            true => println!("{json}"),
+            false => print_voxels(&summary, &path),
         }
-        if trace.complete() {
-            return Ok(ExitCode::SUCCESS);
-        }
-        eprintln!(
-            "not complete: {} of {} visible voxels unseen after {} steps, {} violations",
-            trace.visible - seen,
-            trace.visible,
-            trace.seen.len() - 1,
-            trace.violations
-        );
-        Ok(ExitCode::FAILURE)
+        Ok(ended(&summary.head, "visible voxels", summary.violations))
     }
 
     /// Sets the conditions that are given, over those of every survey.
@@ -269,20 +213,18 @@ fn advance(bar: &ProgressBar, seen: &[u32]) {
     bar.set_message(format!("step {}", seen.len()));
 }
 
-/// What one robot of a survey of voxels came to.
-fn voxel_robot(trace: &VoxelTrace, robot: usize) -> serde_json::Value {
-    let way = &trace.ways[robot];
-    let records = trace.records.iter();
-    let own = records.filter(|record| usize::from(record.robot) == robot);
-    serde_json::json!({
-        "start": (way[0].x, way[0].y, way[0].z),
-        "steps": way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
-        "work": own.clone().map(|record| u64::from(record.work)).sum::<u64>(),
-        "frames_sent": own.clone().map(|record| record.sent.frames).sum::<u32>(),
-        "bytes_sent": own.map(|record| record.sent.bytes).sum::<u32>(),
-        "stop": trace.stops[robot].map(|stop| stop.reason().name()),
-        "stop_reason": trace.stops[robot].map(|stop| stop.to_string()),
-    })
+/// The exit status; says what is left, if something is.
+fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
+    if head.complete {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!(
+        "not complete: {} of {} {places} unseen after {} steps, {violations} violations",
+        head.reachable_cells - head.seen_cells,
+        head.reachable_cells,
+        head.ticks,
+    );
+    ExitCode::FAILURE
 }
 
 fn after(ticks: Option<u32>) -> String {
@@ -290,17 +232,12 @@ fn after(ticks: Option<u32>) -> String {
 }
 
 fn print(summary: &Summary, out: &Path) {
-    println!(
-        "{}: {} of {} columns seen",
-        summary.map, summary.seen_cells, summary.reachable_cells
+    print_head(
+        &summary.head,
+        "columns",
+        summary.ticks_to_95,
+        summary.violations,
     );
-    println!("  95 % seen          {}", after(summary.ticks_to_95));
-    println!("  everything seen    {}", after(summary.ticks_to_seen));
-    let stopped = after(summary.ticks_to_stopped);
-    println!("  every robot done   {stopped}");
-    let work = summary.max_work_per_tick;
-    println!("  most work          {work} in one tick");
-    println!("  violations         {}", summary.violations);
     for (number, robot) in summary.robots.iter().enumerate() {
         println!(
             "  robot {number:<3} {:>6} steps, {:>6} columns known, {:>5} frames of {:>7} bytes sent, {}",
@@ -308,13 +245,60 @@ fn print(summary: &Summary, out: &Path) {
             robot.cells_known,
             robot.frames_sent,
             robot.bytes_sent,
-            match &robot.stop_reason {
-                _ if !robot.alive => "died",
-                Some(reason) => reason,
-                None => "had not stopped",
-            }
+            state(robot.alive, robot.stop_reason.as_deref()),
         );
     }
-    println!("  trace digest       {}", summary.trace_digest);
+    print_end(&summary.head, out);
+}
+
+fn print_voxels(summary: &VoxelSummary, out: &Path) {
+    let places = "visible voxels";
+    print_head(
+        &summary.head,
+        places,
+        summary.ticks_to_95,
+        summary.violations,
+    );
+    for (number, robot) in summary.robots.iter().enumerate() {
+        println!(
+            "  robot {number:<3} {:>6} steps, {:>6} voxels known, {:>5} frames of {:>7} bytes sent, {}",
+            robot.steps,
+            robot.cells_known,
+            robot.frames_sent,
+            robot.bytes_sent,
+            state(robot.alive, robot.stop_reason.as_deref()),
+        );
+    }
+    print_end(&summary.head, out);
+}
+
+fn print_head(head: &Head, places: &str, ticks_to_95: Option<u32>, violations: u32) {
+    let Head {
+        map,
+        seen_cells,
+        reachable_cells,
+        ..
+    } = head;
+    println!("{map}: {seen_cells} of {reachable_cells} {places} seen");
+    println!("  95 % seen          {}", after(ticks_to_95));
+    println!("  everything seen    {}", after(head.ticks_to_seen));
+    println!("  every robot done   {}", after(head.ticks_to_stopped));
+    println!(
+        "  most work          {} in one tick",
+        head.max_work_per_tick
+    );
+    println!("  violations         {violations}");
+}
+
+fn print_end(head: &Head, out: &Path) {
+    println!("  trace digest       {}", head.trace_digest);
     println!("  results            {}", out.display());
+}
+
+fn state(alive: bool, stop: Option<&str>) -> &str {
+    match stop {
+        _ if !alive => "died",
+        Some(reason) => reason,
+        None => "had not stopped",
+    }
 }

@@ -1,66 +1,38 @@
-//! A run in one JSON object.
+//! A run in a grid of cells, in one JSON object.
 
 use planner_core::radio::Hearsay;
 use serde::Serialize;
 
+use super::Head;
 use crate::measured::Measured;
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome};
 use crate::scenario::grid::Scenario;
-use crate::scenario::{AirFaults, Conditions, MediumKind, Reach};
+use crate::scenario::{Conditions, MediumKind, Reach};
 
 /// What a run came to, in the field names of the JSON summary.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Whether every reachable cell was seen by somebody, without a violation.
-    pub complete: bool,
-    /// See [`Outcome::ticks_to_seen`].
-    pub ticks_to_seen: Option<u32>,
-    /// See [`Outcome::ticks_to_stopped`].
-    pub ticks_to_stopped: Option<u32>,
-    /// Ticks that were run.
-    pub ticks: u32,
-    /// Free cells that can be reached from any start.
-    pub reachable_cells: u32,
-    /// Reachable cells that somebody has seen.
-    pub seen_cells: u32,
+    /// What every summary says.
+    #[serde(flatten)]
+    pub head: Head,
     /// Free cells that cannot be reached.
     pub unreachable_cells: u32,
     /// Share of the seen cells that more than one robot saw with its own
     /// sensor, 0 to 1.
     pub overlap: f64,
-    /// Largest work of one planner in one tick.
-    pub max_work_per_tick: u32,
     /// Whether all living robots know the same cells in the end.
     pub maps_agree: bool,
     /// Why they do not.
     pub maps_differ_because: Option<&'static str>,
     /// Moves into obstacles; anything but 0 is a bug of the planner.
     pub violations: usize,
-    /// [`Trace::digest`](crate::record::grid::Trace::digest).
-    pub trace_digest: String,
-    /// Name of the map.
-    pub map: String,
     /// What decided.
     pub planner: PlannerKind,
     /// Sensor range in cells.
     pub range: u8,
     /// Field of view in degrees.
     pub fov: u16,
-    /// What carried what robots told each other.
-    pub medium: MediumKind,
-    /// Ticks between two exchanges; 0: never.
-    pub sync: u32,
-    /// Bytes that a robot might send by radio in a tick on average.
-    pub byte_budget: u16,
-    /// Share of messages lost, 0 to 1.
-    pub loss: f64,
-    /// What else went wrong in the air.
-    pub air: AirFaults,
-    /// Whether frames were signed.
-    pub keyed: bool,
-    /// Seed of all chance in the run.
-    pub seed: u64,
     /// Whether a cell held at most one robot.
     pub solid: bool,
     /// Robot by robot.
@@ -107,31 +79,28 @@ impl Summary {
     pub fn new(scenario: &Scenario, outcome: &Outcome, trace_digest: String) -> Self {
         let free = scenario.world.free_cells().count() as u32;
         Self {
-            complete: outcome.is_complete(),
-            ticks_to_seen: outcome.ticks_to_seen,
-            ticks_to_stopped: outcome.ticks_to_stopped,
-            ticks: outcome.ticks,
-            reachable_cells: outcome.reachable_cells,
-            seen_cells: outcome.seen_cells,
+            head: Head {
+                complete: outcome.is_complete(),
+                ticks_to_seen: outcome.ticks_to_seen,
+                ticks_to_stopped: outcome.ticks_to_stopped,
+                ticks: outcome.ticks,
+                reachable_cells: outcome.reachable_cells,
+                seen_cells: outcome.seen_cells,
+                max_work_per_tick: outcome.max_work_per_tick,
+                trace_digest,
+                map: scenario.world.name().into(),
+                keyed: scenario.conditions.key.is_some(),
+                conditions: scenario.conditions.clone(),
+            },
             unreachable_cells: free - outcome.reachable_cells,
             overlap: outcome.overlap(),
-            max_work_per_tick: outcome.max_work_per_tick,
             maps_agree: outcome.maps_agree(),
             maps_differ_because: (!outcome.maps_agree())
                 .then(|| why_maps_differ(scenario, outcome)),
             violations: outcome.violations.len(),
-            trace_digest,
-            map: scenario.world.name().into(),
             planner: scenario.planner,
             range: scenario.range,
             fov: scenario.fov,
-            medium: scenario.conditions.medium,
-            sync: scenario.conditions.sync,
-            byte_budget: scenario.conditions.byte_budget,
-            loss: scenario.conditions.loss,
-            air: scenario.conditions.air.clone(),
-            keyed: scenario.conditions.key.is_some(),
-            seed: scenario.conditions.seed,
             solid: scenario.solid,
             robots: scenario
                 .starts

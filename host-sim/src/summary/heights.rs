@@ -1,35 +1,24 @@
 //! A survey in one JSON object.
 
+use planner_core::RobotId;
 use serde::Serialize;
 
+use super::Head;
 use crate::record::Deed;
 use crate::record::heights::{Safety, Trace};
 use crate::scenario::heights::Planner;
-use crate::scenario::{Event, MediumKind};
 
-/// What a survey came to; the keys are those of `explore` where they mean the same. A
-/// cell is a column here.
+/// What a survey came to; the keys are those of `explore` where they mean the same.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Whether every column was seen by somebody, without a violation.
-    pub complete: bool,
-    /// Steps until all columns had been seen.
-    pub ticks_to_seen: Option<u32>,
-    /// Steps until 95 % of them had.
+    /// What every summary says; a place is a column.
+    #[serde(flatten)]
+    pub head: Head,
+    /// Steps until 95 % of all columns had been seen.
     pub ticks_to_95: Option<u32>,
-    /// Steps until 99 % of them had.
+    /// Steps until 99 % of them had been.
     pub ticks_to_99: Option<u32>,
-    /// Steps until every living robot had stopped.
-    pub ticks_to_stopped: Option<u32>,
-    /// Steps that were run.
-    pub ticks: u32,
-    /// Columns there are.
-    pub reachable_cells: u32,
-    /// Columns that somebody has seen.
-    pub seen_cells: u32,
-    /// Largest work of one planner in one step.
-    pub max_work_per_tick: u32,
-    /// Mean of it.
+    /// Mean work of a planner in a step.
     pub mean_work_per_tick: f64,
     /// Length of all ways, in cells.
     pub distance: f64,
@@ -37,26 +26,14 @@ pub struct Summary {
     pub violations: u32,
     /// The same by kind.
     pub safety: Safety,
-    /// [`Trace::digest`].
-    pub trace_digest: String,
-    /// Name of the terrain.
-    pub map: String,
     /// How the robots decided.
     pub planner: Planner,
     /// Sensor range in cells.
     pub range: f32,
     /// Longest flight in a step, in cells.
     pub step: f32,
-    /// What carried what robots told each other.
-    pub medium: MediumKind,
-    /// Bytes that a robot might send by radio in a step on average.
-    pub byte_budget: u16,
-    /// Share of messages lost, 0 to 1.
-    pub loss: f64,
     /// Share of steps slept through, 0 to 1.
     pub skip: f64,
-    /// Seed of all chance in the run.
-    pub seed: u64,
     /// Robot by robot.
     pub robots: Vec<RobotSummary>,
 }
@@ -101,30 +78,30 @@ impl Summary {
         let scenario = &trace.scenario;
         let violations = trace.safety.violations();
         Self {
-            complete: trace.complete() && violations == 0,
-            ticks_to_seen: trace.ticks_to(1.0),
+            head: Head {
+                complete: trace.complete() && violations == 0,
+                ticks_to_seen: trace.ticks_to(1.0),
+                ticks_to_stopped: trace.ticks_to_stopped(),
+                ticks: trace.seen.len() as u32 - 1,
+                reachable_cells: trace.extent.cells(),
+                seen_cells: trace.seen.last().copied().unwrap_or(0),
+                max_work_per_tick: work().max().unwrap_or(0),
+                trace_digest: trace.digest(),
+                map: trace.terrain.name().into(),
+                keyed: scenario.conditions.key.is_some(),
+                conditions: scenario.conditions.clone(),
+            },
             ticks_to_95: trace.ticks_to(0.95),
             ticks_to_99: trace.ticks_to(0.99),
-            ticks_to_stopped: trace.ticks_to_stopped(),
-            ticks: trace.seen.len() as u32 - 1,
-            reachable_cells: trace.extent.cells(),
-            seen_cells: trace.seen.last().copied().unwrap_or(0),
-            max_work_per_tick: work().max().unwrap_or(0),
             mean_work_per_tick: work().map(f64::from).sum::<f64>()
                 / trace.records.len().max(1) as f64,
             distance: robots.iter().map(|robot| robot.distance).sum(),
             violations,
             safety: trace.safety,
-            trace_digest: trace.digest(),
-            map: trace.terrain.name().into(),
             planner: scenario.planner,
             range: scenario.limits.range,
             step: scenario.limits.step,
-            medium: scenario.conditions.medium,
-            byte_budget: scenario.conditions.byte_budget,
-            loss: scenario.conditions.loss,
             skip: scenario.skip,
-            seed: scenario.conditions.seed,
             robots,
         }
     }
@@ -137,9 +114,8 @@ impl RobotSummary {
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
         let start = trace.starts[robot];
         let stop = trace.stops[robot];
-        let deaths = &trace.scenario.conditions.faults.deaths;
-        let dies =
-            |of: &Event| usize::from(of.robot.0) == robot && of.tick < trace.seen.len() as u32;
+        let faults = &trace.scenario.conditions.faults;
+        let last = trace.seen.len() as u32 - 1;
         Self {
             start: (start.x, start.y, start.z),
             steps: count(Deed::Flew),
@@ -152,7 +128,7 @@ impl RobotSummary {
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
             stop: stop.map(|stop| stop.reason().name()),
             stop_reason: stop.map(|stop| stop.to_string()),
-            alive: !deaths.iter().any(dies),
+            alive: faults.is_alive(RobotId(robot as u8), last),
         }
     }
 }

@@ -1,0 +1,109 @@
+//! A survey of voxels in one JSON object.
+
+use planner_core::RobotId;
+use serde::Serialize;
+
+use super::Head;
+use crate::record::voxels::VoxelTrace;
+
+/// What a survey of voxels came to; the keys are those of the others where they mean the
+/// same.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// What every summary says; a place is an occupied voxel that can be seen.
+    #[serde(flatten)]
+    pub head: Head,
+    /// Steps until 95 % of all that can be seen had been.
+    pub ticks_to_95: Option<u32>,
+    /// Steps until 99 % of it had been.
+    pub ticks_to_99: Option<u32>,
+    /// Mean work of a planner in a step.
+    pub mean_work_per_tick: f64,
+    /// Flights that should not have been; anything but 0 is a bug of the planner.
+    pub violations: u32,
+    /// How the robots decided.
+    pub planner: &'static str,
+    /// Sensor range in voxels.
+    pub range: u8,
+    /// Robot by robot.
+    pub robots: Vec<RobotSummary>,
+}
+
+/// What one robot came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct RobotSummary {
+    /// Where it started.
+    pub start: (i16, i16, i16),
+    /// Flights.
+    pub steps: usize,
+    /// Voxels on its own map.
+    pub cells_known: u32,
+    /// Work of its planner over the run.
+    pub work: u64,
+    /// Frames sent by radio.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
+    /// [`Stop::name`](planner_core::Stop::name) of the reason; `null` if it had not
+    /// stopped.
+    pub stop: Option<&'static str>,
+    /// The reason in words.
+    pub stop_reason: Option<String>,
+    /// Whether it lived to the end of the run.
+    pub alive: bool,
+}
+
+impl Summary {
+    /// The summary of a run.
+    pub fn new(trace: &VoxelTrace) -> Self {
+        let work = || trace.records.iter().map(|record| record.work);
+        let ticks = trace.seen.len() as u32 - 1;
+        let scenario = &trace.scenario;
+        let robots = (0..scenario.robots).map(|robot| RobotSummary::new(trace, robot));
+        Self {
+            head: Head {
+                complete: trace.complete(),
+                ticks_to_seen: trace.ticks_to(1.0),
+                ticks_to_stopped: trace.all_stopped.then_some(ticks),
+                ticks,
+                reachable_cells: trace.visible,
+                seen_cells: trace.seen.last().copied().unwrap_or(0),
+                max_work_per_tick: work().max().unwrap_or(0),
+                trace_digest: trace.digest(),
+                map: trace.scene.name().into(),
+                keyed: scenario.conditions.key.is_some(),
+                conditions: scenario.conditions.clone(),
+            },
+            ticks_to_95: trace.ticks_to(0.95),
+            ticks_to_99: trace.ticks_to(0.99),
+            mean_work_per_tick: work().map(f64::from).sum::<f64>() / work().len().max(1) as f64,
+            violations: trace.violations,
+            planner: "voxel-survey",
+            range: scenario.range,
+            robots: robots.collect(),
+        }
+    }
+}
+
+impl RobotSummary {
+    fn new(trace: &VoxelTrace, robot: usize) -> Self {
+        let way = &trace.ways[robot];
+        let own = || {
+            let records = trace.records.iter();
+            records.filter(move |record| usize::from(record.robot) == robot)
+        };
+        let faults = &trace.scenario.conditions.faults;
+        let last = trace.seen.len() as u32 - 1;
+        Self {
+            start: (way[0].x, way[0].y, way[0].z),
+            steps: way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
+            cells_known: own().last().map_or(0, |record| record.known),
+            work: own().map(|record| u64::from(record.work)).sum(),
+            frames_sent: own().map(|record| record.sent.frames).sum(),
+            bytes_sent: own().map(|record| record.sent.bytes).sum(),
+            stop: trace.stops[robot].map(|stop| stop.reason().name()),
+            stop_reason: trace.stops[robot].map(|stop| stop.to_string()),
+            alive: faults.is_alive(RobotId(robot as u8), last),
+        }
+    }
+}

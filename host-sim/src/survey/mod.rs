@@ -1,5 +1,0 @@
-//! What surveys came to.
-
-mod summary;
-
-pub use summary::{RobotSummary, Summary};

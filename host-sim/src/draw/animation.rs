@@ -60,12 +60,33 @@ type Part = (u32, u32, u32, u32);
 /// That part of a picture, over what was shown before.
 fn frame(picture: &RgbImage, (left, top, width, height): Part, is_last: bool) -> Frame<'static> {
     let part = picture.view(left, top, width, height).to_image();
+    let (width, height) = (width as u16, height as u16);
+    let frame = match indexed(&part) {
+        Some((pixels, palette)) => Frame::from_palette_pixels(width, height, pixels, palette, None),
+        None => Frame::from_rgb_speed(width, height, part.as_raw(), 20),
+    };
     Frame {
         left: left as u16,
         top: top as u16,
         delay: if is_last { LAST_DELAY } else { DELAY },
-        ..Frame::from_rgb_speed(width as u16, height as u16, part.as_raw(), 20)
+        ..frame
     }
+}
+
+/// The pixels as numbers of colours, and the colours; `None`: there are more than 256.
+/// Most pictures have a dozen, which are found sooner in a list than in a tree.
+fn indexed(part: &RgbImage) -> Option<(Vec<u8>, Vec<u8>)> {
+    let mut palette: Vec<Rgb<u8>> = Vec::new();
+    let number = |&color: &Rgb<u8>| {
+        let known = palette.iter().position(|&of| of == color);
+        u8::try_from(known.unwrap_or_else(|| {
+            palette.push(color);
+            palette.len() - 1
+        }))
+        .ok()
+    };
+    let pixels = part.pixels().map(number).collect::<Option<_>>()?;
+    Some((pixels, palette.iter().flat_map(|color| color.0).collect()))
 }
 
 /// The box around all pixels that differ, if any does.

@@ -368,7 +368,11 @@ mod tests {
         refused(&|it| it.robot = 3, "a robot from 0 to 2");
         refused(&|it| it.tick = u32::MAX, "a tick before 20000");
         refused(&|it| it.tick = 0, "ticks in order");
-        refused(&|it| it.robot = 0, "once a tick, in order");
+        let before = good.records[4];
+        refused(
+            &|it| (it.tick, it.robot) = (before.tick, before.robot),
+            "once a tick, in order",
+        );
         refused(&|it| it.goal = Some(Cell::new(24, 0)), "a goal in");
         refused(&|it| it.gain = f32::INFINITY, "a finite gain");
         refused(&|it| it.known = 577, "at most 576 known columns");

@@ -15,7 +15,10 @@ use super::proxy::Proxy;
 use super::surveyor::SurveyProxy;
 use crate::measured::{Call, Measured};
 use crate::planners::{PlannerKind, Setup};
-use crate::run::{Host, heights};
+use crate::record::grid::Trace;
+use crate::run::{self, Host, Options, Outcome, heights};
+use crate::scenario::ScenarioError;
+use crate::scenario::grid::Scenario;
 
 /// Many times what the longest answer takes on a busy machine.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -70,6 +73,19 @@ impl Swarm {
     pub fn patient_for(mut self, limit: Duration) -> Self {
         self.limit = limit;
         self
+    }
+
+    /// Runs a scenario with a chip for each robot.
+    ///
+    /// # Errors
+    /// A scenario out of range. A chip that fails ends the run; [`finish`](Self::finish)
+    /// says why.
+    pub fn explore(
+        &self,
+        scenario: &Scenario,
+        options: Options<'_>,
+    ) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+        run::run_on(self, scenario, options)
     }
 
     /// What the chips took, when the run is over.

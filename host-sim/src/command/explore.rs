@@ -10,7 +10,8 @@ use clap::Args;
 use host_sim::draw::{self, Coverage};
 use host_sim::measured::Measured;
 use host_sim::planners::PlannerKind;
-use host_sim::run::{self, Here, Host, Options, Progress};
+use host_sim::record::grid::Trace;
+use host_sim::run::{self, Options, Outcome, Progress};
 use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{ConditionsArgs, MediumKind};
 use host_sim::sensor::ALL_AROUND;
@@ -89,16 +90,21 @@ impl FromStr for Start {
     }
 }
 
+/// What a run came to, its trace, and what the planners took of chips.
+pub(super) type Ran = (Outcome, Option<Trace>, Option<Measured>);
+
 impl Explore {
     pub(crate) fn run(self) -> Done {
-        self.run_on(Here, || Ok(None))
+        self.run_by(|scenario, options| {
+            let (outcome, trace) = run::run(scenario, options)?;
+            Ok((outcome, trace, None))
+        })
     }
 
-    /// Explores with planners that are on `host`, which tells at the end what they took.
-    pub(super) fn run_on(
+    /// Explores by `run`, which also tells what the planners took, if they were on chips.
+    pub(super) fn run_by(
         self,
-        host: impl Host,
-        measured: impl FnOnce() -> Result<Option<Measured>, Box<dyn Error>>,
+        run: impl FnOnce(&Scenario, Options<'_>) -> Result<Ran, Box<dyn Error>>,
     ) -> Done {
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
         tell_notes(&self.map, &world);
@@ -116,13 +122,12 @@ impl Explore {
             progress: Some(&mut advance),
             ..Options::default()
         };
-        let (outcome, trace) = run::run_on(&host, &scenario, options)?;
-        drop(host);
+        let (outcome, trace, measured) = run(&scenario, options)?;
         let trace = trace.expect("a trace was asked for");
         bar.finish_and_clear();
 
         let mut summary = Summary::new(&scenario, &outcome, trace.digest());
-        summary.firmware = measured()?;
+        summary.firmware = measured;
         let json = serde_json::to_string_pretty(&summary)?;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;

@@ -28,7 +28,9 @@ impl Firmware {
         }
         let image = self.image.unwrap_or_else(|| self.machine.image());
         let swarm = Swarm::new(self.machine, image);
-        let host = swarm.clone();
-        self.explore.run_on(host, || Ok(Some(swarm.finish()?)))
+        self.explore.run_by(|scenario, options| {
+            let (outcome, trace) = swarm.explore(scenario, options)?;
+            Ok((outcome, trace, Some(swarm.finish()?)))
+        })
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::planners::PlannerKind::{self, Explorer};
-use host_sim::run::{self, Options};
+use host_sim::run::Options;
 use host_sim::scenario::MediumKind::Radio;
 use host_sim::world::World;
 use planner_core::Extent;
@@ -24,7 +24,7 @@ const SOON: Duration = Duration::from_secs(30);
 fn failure(swarm: Swarm, side: u16, planner: PlannerKind) -> ChipError {
     let world = World::from_fn("open", Extent::new(side, side), |_| false).unwrap();
     let scenario = scenario(&Arc::new(world), planner, 2, Radio, 0.0, false);
-    run::run_on(&swarm, &scenario, Options::default()).unwrap();
+    swarm.explore(&scenario, Options::default()).unwrap();
     swarm.finish().unwrap_err()
 }
 

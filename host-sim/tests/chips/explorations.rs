@@ -50,7 +50,7 @@ fn on_chips(scenario: &Scenario, machine: Machine) -> Result<(Trace, Measured), 
         trace: true,
         ..Options::default()
     };
-    let (_, trace) = run::run_on(&swarm, scenario, options).unwrap();
+    let (_, trace) = swarm.explore(scenario, options).unwrap();
     Ok((trace.unwrap(), swarm.finish()?))
 }
 

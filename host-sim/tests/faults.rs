@@ -118,11 +118,11 @@ fn event(robot: u8, tick: u32) -> Event {
 
 const FAULTS: [Fault; 22] = [
     fault("none", Ideal, false, |_, _| {}),
-    fault("none", Radio, true, |_, _| {}),
+    fault("none", Radio, false, |_, _| {}),
     fault("loss", Ideal, true, |it, _| it.loss = 0.5),
     fault("loss", Radio, true, |it, _| it.loss = 0.5),
     fault("silence", Radio, true, |it, _| it.sync = 0),
-    fault("sync", Radio, true, |it, _| it.sync = 5),
+    fault("sync", Radio, false, |it, _| it.sync = 5),
     fault("reach", Ideal, true, |it, _| {
         it.set("radio-range", "4").unwrap()
     }),
@@ -141,10 +141,10 @@ const FAULTS: [Fault; 22] = [
     fault("partition", Radio, true, |it, _| {
         it.set("partition", "5-60:1").unwrap()
     }),
-    fault("duplication", Radio, true, |it, _| it.air.duplication = 0.5),
-    fault("delay", Radio, true, |it, _| it.air.delay = 9),
+    fault("duplication", Radio, false, |it, _| it.air.duplication = 0.5),
+    fault("delay", Radio, false, |it, _| it.air.delay = 9),
     fault("corruption", Radio, true, |it, _| it.air.corruption = 0.5),
-    fault("forging", Radio, true, |it, _| {
+    fault("forging", Radio, false, |it, _| {
         it.set("forge", "3:any").unwrap();
         it.key = Some(Key([7; 16]));
     }),
@@ -164,7 +164,7 @@ const FAULTS: [Fault; 22] = [
         it.faults.deaths.push(event(1, tick / 2));
         it.faults.restarts.push(event(1, tick));
     }),
-    fault("going on", Radio, true, |it, tick| {
+    fault("going on", Radio, false, |it, tick| {
         it.faults.resumes.push(event(1, 10 * tick))
     }),
 ];

@@ -191,46 +191,55 @@ impl<P: fmt::Display> fmt::Display for Stop<P> {
     }
 }
 
-/// A [`Stop`] without the numbers and places that it names.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-pub enum Reason {
-    /// [`Stop::Complete`]
-    Complete = 0,
-    /// [`Stop::Enclosed`]
-    Enclosed = 1,
-    /// [`Stop::Blocked`]
-    Blocked = 2,
-    /// [`Stop::BackAtStart`]
-    BackAtStart = 3,
-    /// [`Stop::NoTrace`]
-    NoTrace = 4,
-    /// [`Stop::AtEdge`]
-    AtEdge = 5,
-    /// [`Stop::OutOfReach`]
-    OutOfReach = 6,
-    /// [`Stop::Unseen`]
-    Unseen = 7,
-    /// [`Stop::Held`]
-    Held = 8,
+/// Declares [`Reason`]: each with its number, its name, and whether it is complete.
+macro_rules! reasons {
+    ($($reason:ident = $code:literal, $name:literal, $is_complete:literal;)*) => {
+        /// A [`Stop`] without the numbers and places that it names.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+        #[repr(u8)]
+        pub enum Reason {
+            $(
+                #[doc = concat!("[`Stop::", stringify!($reason), "`]")]
+                $reason = $code,
+            )*
+        }
+
+        impl Reason {
+            /// All of them, by their numbers.
+            pub const ALL: [Self; [$($code),*].len()] = [$(Self::$reason),*];
+
+            /// The name in summaries, as one word.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$reason => $name,)*
+                }
+            }
+
+            /// Whether everything that the robot could reach within its map is known to it.
+            pub const fn is_complete(self) -> bool {
+                match self {
+                    $(Self::$reason => $is_complete,)*
+                }
+            }
+        }
+    };
+}
+
+reasons! {
+    Complete = 0, "complete", true;
+    Enclosed = 1, "enclosed", true;
+    Blocked = 2, "blocked", false;
+    BackAtStart = 3, "back-at-start", false;
+    NoTrace = 4, "no-trace", false;
+    AtEdge = 5, "at-edge", true;
+    OutOfReach = 6, "out-of-reach", true;
+    Unseen = 7, "unseen", false;
+    Held = 8, "held", false;
 }
 
 impl Reason {
-    /// All of them, by their numbers.
-    pub const ALL: [Self; 9] = [
-        Self::Complete,
-        Self::Enclosed,
-        Self::Blocked,
-        Self::BackAtStart,
-        Self::NoTrace,
-        Self::AtEdge,
-        Self::OutOfReach,
-        Self::Unseen,
-        Self::Held,
-    ];
-
     /// The reason's number in traces and, plus one, in C. Numbers do not change; new
     /// reasons get new ones.
     pub const fn code(self) -> u8 {
@@ -240,29 +249,6 @@ impl Reason {
     /// The reason with this number.
     pub fn from_code(code: u8) -> Option<Self> {
         Self::ALL.get(usize::from(code)).copied()
-    }
-
-    /// Whether everything that the robot could reach within its map is known to it.
-    pub const fn is_complete(self) -> bool {
-        match self {
-            Self::Complete | Self::Enclosed | Self::AtEdge | Self::OutOfReach => true,
-            Self::Blocked | Self::BackAtStart | Self::NoTrace | Self::Unseen | Self::Held => false,
-        }
-    }
-
-    /// The name in summaries, as one word.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Enclosed => "enclosed",
-            Self::Blocked => "blocked",
-            Self::BackAtStart => "back-at-start",
-            Self::NoTrace => "no-trace",
-            Self::AtEdge => "at-edge",
-            Self::OutOfReach => "out-of-reach",
-            Self::Unseen => "unseen",
-            Self::Held => "held",
-        }
     }
 }
 

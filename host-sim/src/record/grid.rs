@@ -1,7 +1,7 @@
 //! The record of a run in integers: what golden tests compare, what firmware
 //! must reproduce, and what every picture is drawn from.
 //!
-//! As a file it is as [`record`](crate::record) says; the header holds the whole
+//! As a file it is as [`record`] says; the header holds the whole
 //! scenario with the world's rows (`#` obstacle, `.` free), the columns are the fields of
 //! a [`Record`]. Nothing else is needed to run the scenario again or to redraw it. What no
 //! run leaves (a place outside the world, a robot that is not there, a step that does not

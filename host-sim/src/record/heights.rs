@@ -1,6 +1,6 @@
 //! What a run leaves behind.
 //!
-//! As a file it is as [`record`](crate::record) says; the header holds the scenario, the
+//! As a file it is as [`record`] says; the header holds the scenario, the
 //! terrain's heights in quarters of a cell and why each robot had stopped at the end, the
 //! columns are the fields of a [`Record`]. Version 1 had the reasons 33 and 39 the other
 //! way round.

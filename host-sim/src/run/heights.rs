@@ -10,7 +10,7 @@ use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
 use planner_core::surface::{Patch, Surface};
 use planner_core::survey::{Limits, SetupError, Surveyor};
-use planner_core::{Action, Cell, Extent, Motion, Point, RobotId, Status};
+use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
 use crate::baselines::surveys::{Follower, Guide, Rounds, assign};
 use crate::dice::Dice;
@@ -389,14 +389,13 @@ impl<const T: usize> Simulation<T> {
 
     /// Everybody's position and news to everybody, however much it is.
     fn share_maps(&mut self) {
-        let messages: Vec<Option<(Status<Point, Cell>, Vec<Patch>)>> = self
+        let messages: Vec<_> = self
             .robots
             .iter()
             .map(|robot| {
                 let pilot = robot.pilot.get();
-                robot
-                    .awake
-                    .then(|| (pilot.status(), pilot.knowledge().patches().collect()))
+                let patches = || pilot.knowledge().patches().collect::<Vec<_>>();
+                robot.awake.then(|| (pilot.status(), patches()))
             })
             .collect();
         for (from, message) in messages.iter().enumerate() {

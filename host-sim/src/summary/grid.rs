@@ -63,7 +63,7 @@ pub struct RobotSummary {
     pub frames_sent: u32,
     /// Their bytes.
     pub bytes_sent: u32,
-    /// [`Stop::name`](planner_core::Stop::name) of the reason; `null` if it had not
+    /// [`Reason::name`](planner_core::Reason::name) of the stop; `null` if it had not
     /// stopped.
     pub stop: Option<&'static str>,
     /// The reason in words.

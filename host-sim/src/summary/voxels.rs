@@ -44,7 +44,7 @@ pub struct RobotSummary {
     pub frames_sent: u32,
     /// Their bytes.
     pub bytes_sent: u32,
-    /// [`Stop::name`](planner_core::Stop::name) of the reason; `null` if it had not
+    /// [`Reason::name`](planner_core::Reason::name) of the stop; `null` if it had not
     /// stopped.
     pub stop: Option<&'static str>,
     /// The reason in words.
@@ -97,7 +97,7 @@ impl RobotSummary {
         Self {
             start: (way[0].x, way[0].y, way[0].z),
             steps: way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
-            cells_known: own().last().map_or(0, |record| record.known),
+            cells_known: own().next_back().map_or(0, |record| record.known),
             work: own().map(|record| u64::from(record.work)).sum(),
             frames_sent: own().map(|record| record.sent.frames).sum(),
             bytes_sent: own().map(|record| record.sent.bytes).sum(),

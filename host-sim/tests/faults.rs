@@ -141,7 +141,9 @@ const FAULTS: [Fault; 22] = [
     fault("partition", Radio, true, |it, _| {
         it.set("partition", "5-60:1").unwrap()
     }),
-    fault("duplication", Radio, false, |it, _| it.air.duplication = 0.5),
+    fault("duplication", Radio, false, |it, _| {
+        it.air.duplication = 0.5
+    }),
     fault("delay", Radio, false, |it, _| it.air.delay = 9),
     fault("corruption", Radio, true, |it, _| it.air.corruption = 0.5),
     fault("forging", Radio, false, |it, _| {

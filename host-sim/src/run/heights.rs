@@ -8,7 +8,7 @@ use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
-use planner_core::surface::{Patch, Surface};
+use planner_core::surface::Surface;
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 

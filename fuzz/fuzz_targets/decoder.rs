@@ -57,7 +57,7 @@ fn cells(bytes: &[u8], extent: Extent, buffer: &mut [u8; MAX_LEN]) -> Option<usi
 fn heights(bytes: &[u8], extent: Extent, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
     let frame = SurfaceFrame::decode(bytes, None, GRID, extent).ok()?;
     assert!(extent.contains(frame.status.position.cell()));
-    assert!(frame.target.is_none_or(|target| extent.contains(target)));
+    assert!(frame.status.goal.is_none_or(|goal| extent.contains(goal)));
     for record in &frame.records {
         let cells = u64::from(record.cells) << if record.south { 32 } else { 0 };
         assert_inside(cells, extent, |bit| record.tile.cell(bit));

@@ -21,6 +21,7 @@ use std::io::{self, BufRead, Write};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 pub use decision::{Kind, Nothing, Record};
@@ -106,7 +107,10 @@ pub(crate) fn read<H: DeserializeOwned, K: Kind>(
 ) -> Result<(u32, H, Vec<Record<K>>), TraceError> {
     let mut header = String::new();
     from.read_line(&mut header)?;
-    let label: Label = serde_json::from_str(&header)?;
+    // By way of a value: what is flattened reads its numbers only so where serde_json keeps
+    // all their digits, which any crate beside this one may ask of it.
+    let header: Value = serde_json::from_str(&header)?;
+    let label = Label::deserialize(&header)?;
     let reads = K::FORMAT;
     if label.format != reads.name || !(reads.oldest..=reads.version).contains(&label.version) {
         return Err(TraceError::Format {
@@ -115,7 +119,7 @@ pub(crate) fn read<H: DeserializeOwned, K: Kind>(
             version: label.version,
         });
     }
-    let header = serde_json::from_str(&header)?;
+    let header = serde_json::from_value(header)?;
     let records = read_records::<K>(from)?;
     if records.len() != label.records {
         return Err(TraceError::Records {

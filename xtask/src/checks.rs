@@ -383,7 +383,9 @@ fn miri() -> Result<String> {
             "map::",
             "radio::",
             "sight::",
-            "explorer::pa",
+            "tile::",
+            "role::path",
+            "explorer::patch",
         ])
         .args(SKIPPED.map(|test| format!("--skip={test}")))
         .run()?;

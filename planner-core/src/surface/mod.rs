@@ -14,7 +14,9 @@ pub(crate) use nearest::distance_to_tile;
 pub use segment::{Columns, Crossing, clearance, in_sight};
 
 use crate::cell::{Cell, Direction, Extent, ExtentError};
-use crate::tile::{MOST_TILES, TILE, TileIndex, TileSet, Tiles, bits, every_tile, neighbours};
+use crate::tile::{
+    MOST_TILES, TILE, TileIndex, TileSet, Tiles, bits, carried, every_tile, neighbours,
+};
 
 /// Height of the ground, in quarters of a cell: from 0 to 63.75 cells. Whole cells
 /// would be too coarse: each stair of a gentle slope would hide the ground below it.
@@ -217,7 +219,7 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
     /// Joins `patch` into the map; gives the columns that were unknown. Columns
     /// outside are ignored.
     ///
-    /// Cost: 64 columns, and five tiles if anything is new.
+    /// Cost: 64 columns, and if anything is new, its tile and those that it touches.
     pub fn merge(&mut self, patch: &Patch) -> u64 {
         let cells = patch.cells & patch.tile.inside(self.extent);
         let new = cells & !self.known(patch.tile);
@@ -251,7 +253,9 @@ impl<const TW: usize, const TH: usize> Surface<TW, TH> {
         self.known_columns += new.count_ones();
         self.recount(tile);
         for direction in Direction::ALL {
-            self.recount(tile.beside(direction));
+            if carried(new, direction) != 0 {
+                self.recount(tile.beside(direction));
+            }
         }
         true
     }

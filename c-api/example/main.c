@@ -23,7 +23,7 @@ static const char *const WORLD[] = {
     "#..........#...........#",
     "########################",
 };
-enum { WIDTH = 24, HEIGHT = 12, RANGE = 2 };
+enum { WIDTH = 24, HEIGHT = 12, CELL_MM = 100 };
 
 static bool is_blocked(int x, int y) {
     return x < 0 || y < 0 || x >= WIDTH || y >= HEIGHT || WORLD[y][x] == '#';
@@ -38,21 +38,66 @@ static void check(bool holds, const char *what) {
     }
 }
 
-// What a real robot's sensor would tell: the cells around it.
-static void look(PlannerCell at) {
-    PlannerSeen seen[(2 * RANGE + 1) * (2 * RANGE + 1)];
-    size_t count = 0;
-    for (int y = -RANGE; y <= RANGE; y++) {
-        for (int x = -RANGE; x <= RANGE; x++) {
-            PlannerCell cell = {(int16_t)(at.x + x), (int16_t)(at.y + y)};
-            // Behind a wall next to the robot nothing is seen.
-            bool hidden = is_blocked(at.x + x / 2, at.y + y / 2) && (x / 2 != 0 || y / 2 != 0);
-            if (!hidden) {
-                seen[count++] = (PlannerSeen){cell, is_blocked(cell.x, cell.y)};
-            }
-        }
+// What the driver of a VL53L1X tells, and what it tells it of.
+typedef struct {
+    uint8_t status;
+    uint16_t millimetres;
+} Ranging;
+enum { RANGE_VALID = 0, SIGMA_FAIL = 1, SIGNAL_FAIL = 2 };
+
+// Four of them: ahead, right, back, left.
+enum { SENSORS = 4 };
+static PlannerBeam beams[SENSORS];
+
+// Even a black wall answers from here, so no answer means that there is none.
+static const float MAX_RANGE = 3;
+// Not below the largest range: nothing within reach.
+static const float NOTHING = 3;
+// Negative: no measurement.
+static const float NO_MEASUREMENT = -1;
+
+static void mount_sensors(void) {
+    for (int i = 0; i < SENSORS; i++) {
+        beams[i].bearing = planner_bearing((float)i * 1.5707963f);
     }
-    check(planner_observe_cells(&robot, at, seen, count) == PLANNER_RESULT_OK, "observe");
+}
+
+// Stands for the hardware: a white wall answers from 1.3 m; now and then it is too noisy.
+static Ranging measure(PlannerCell at, int sensor) {
+    static const int DX[] = {1, 0, -1, 0}, DY[] = {0, 1, 0, -1};
+    static unsigned calls;
+    int cells = 0;
+    while (!is_blocked(at.x + (cells + 1) * DX[sensor], at.y + (cells + 1) * DY[sensor])) {
+        cells++;
+    }
+    int millimetres = cells * CELL_MM + CELL_MM / 2;
+    if (millimetres > 1300) {
+        return (Ranging){SIGNAL_FAIL, 0};
+    }
+    return (Ranging){++calls % 7 == 0 ? SIGMA_FAIL : RANGE_VALID, (uint16_t)millimetres};
+}
+
+// An obstacle at a distance, nothing within reach, or no measurement: three things.
+static float range_of(Ranging ranging) {
+    switch (ranging.status) {
+    case RANGE_VALID:
+        return (float)ranging.millimetres / CELL_MM;
+    case SIGNAL_FAIL:
+        return NOTHING;
+    default:
+        return NO_MEASUREMENT;
+    }
+}
+
+// From the middle of a cell; a robot on wheels gives the pose of its odometry.
+static void look(PlannerCell at) {
+    for (int i = 0; i < SENSORS; i++) {
+        beams[i].range = range_of(measure(at, i));
+    }
+    PlannerPose pose = {(float)at.x + 0.5f, (float)at.y + 0.5f, 0};
+    PlannerResult result =
+        planner_observe_scan(&robot, &pose, MAX_RANGE, PLANNER_TOLERANCE, beams, SENSORS);
+    check(result == PLANNER_RESULT_OK, "observe");
 }
 
 static void mistakes_are_answered(const PlannerConfig *config) {
@@ -71,8 +116,8 @@ static void mistakes_are_answered(const PlannerConfig *config) {
     check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "still not created");
 }
 
-// Says why the robot stands still. This sensor sees all around; one that does not is
-// turned to `action->look`.
+// Says why the robot stands still. These sensors look into all four directions; a robot
+// whose sensors do not is turned to `action->look`.
 static void explain(const PlannerAction *action) {
     static const char *const REASONS[] = {
         [PLANNER_WAIT_NONE] = "",
@@ -95,6 +140,7 @@ int main(void) {
         .cell_mm = 100,
         .bytes_per_tick = PLANNER_MAX_FRAME,
     };
+    mount_sensors();
     mistakes_are_answered(&config);
     check(planner_create(&robot, &config) == PLANNER_RESULT_OK, "create");
     bool is_mute;

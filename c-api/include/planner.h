@@ -28,8 +28,9 @@
 // The longest frame, in bytes.
 #define PLANNER_MAX_FRAME 55
 
-// Beams of one scan at most.
-#define PLANNER_MAX_BEAMS 64
+// The tolerance of a range scan, in cells: for ranges in whole millimetres and a few
+// millimetres of error on cells of 50 mm and more.
+#define PLANNER_TOLERANCE 0.1
 
 // Size of a planner in words of 8 bytes: the 28 KiB that an explorer may take by
 // `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
@@ -48,7 +49,8 @@ typedef enum {
   // The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
   // off the grid.
   PLANNER_RESULT_EXTENT = 4,
-  // The scan's pose is not a number, or its largest range is not a positive one.
+  // The scan's pose is not a number, its largest range is not a positive one, or its
+  // tolerance is not between 0 and 0.25.
   PLANNER_RESULT_SCAN = 5,
   // More values than a call takes.
   PLANNER_RESULT_TOO_MANY = 6,
@@ -185,20 +187,30 @@ typedef struct {
   uint8_t key[16];
 } PlannerConfig;
 
+// A direction relative to the heading, as a vector of length 1; `planner_bearing` makes
+// it of an angle. A beam whose vector is longer or shorter by 0.001 says nothing.
+typedef struct {
+  // Its part along the heading: 1 is straight ahead.
+  float ahead;
+  // Its part to the right of the heading.
+  float right;
+} PlannerBearing;
+
 // Where the robot is, in cells: the cell x,y covers x to x + 1 and y to y + 1.
 typedef struct {
   // Position along x, in cells.
   float x;
   // Position along y, in cells.
   float y;
-  // Direction of bearing 0, in radians; grows from east to south.
+  // Direction of the bearing that is straight ahead, in radians; grows from east to
+  // south.
   float heading;
 } PlannerPose;
 
 // One distance measured.
 typedef struct {
-  // Direction relative to the heading, in radians; grows from east to south.
-  float bearing;
+  // Where it pointed to.
+  PlannerBearing bearing;
   // Distance to what was hit, in cells. Infinite, or not below `max_range`: nothing
   // within reach, so what lies on the beam is free. Negative or not a number: no
   // measurement, which says nothing about any cell. Never give one for the other.
@@ -242,9 +254,20 @@ extern "C" {
 // planner that runs goes on.
 PlannerResult planner_create(Planner *planner, const PlannerConfig *config);
 
-// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
-// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
-// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
+// The direction `radians` from the robot's heading; grows from east to south. Make it
+// once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
+// finite gives a direction whose beams say nothing.
+PlannerBearing planner_bearing(float radians);
+
+// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
+// most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
+// `PLANNER_RESULT_OFF_GRID` changes nothing.
+//
+// `max_range`: distance in cells up to which every obstacle gives a measurement.
+//
+// `tolerance`: how far, in cells, the end of a beam may lie from where it is reported,
+// 0 to 0.25: (range error + position error + max_range × heading error) / side of a
+// cell, rounding among the errors. `PLANNER_TOLERANCE` is the usual one.
 //
 // What the proof of completeness needs of looks, of scans and of cells: standing on a
 // free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
@@ -255,6 +278,7 @@ PlannerResult planner_create(Planner *planner, const PlannerConfig *config);
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
+                                   float tolerance,
                                    const PlannerBeam *beams,
                                    size_t count);
 

@@ -12,13 +12,13 @@ mod types;
 
 use planner_core::explorer::{Config, Explorer};
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
-use planner_core::sight::{Beam, RangeScan, ScanError};
+use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
 use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
 pub use place::{PLANNER_WORDS, Planner};
 pub use types::{
-    PlannerAction, PlannerActionKind, PlannerBeam, PlannerCell, PlannerConfig, PlannerDirection,
-    PlannerPose, PlannerResult, PlannerSeen, PlannerStop, PlannerWait,
+    PlannerAction, PlannerActionKind, PlannerBeam, PlannerBearing, PlannerCell, PlannerConfig,
+    PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerStop, PlannerWait,
 };
 
 use place::{Robot, input, inputs, output, robot};
@@ -38,8 +38,10 @@ const _: () = assert!(PLANNER_MAX_CELLS as usize == 8 * place::TILES);
 pub const PLANNER_MAX_FRAME: usize = 55;
 const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
 
-/// Beams of one scan at most.
-pub const PLANNER_MAX_BEAMS: usize = 64;
+/// The tolerance of a range scan, in cells: for ranges in whole millimetres and a few
+/// millimetres of error on cells of 50 mm and more.
+pub const PLANNER_TOLERANCE: f32 = 0.1;
+const _: () = assert!(PLANNER_TOLERANCE == RangeSensor::TOLERANCE);
 
 /// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
 /// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
@@ -77,9 +79,23 @@ pub extern "C" fn planner_create(
     })
 }
 
-/// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor.
-/// At most [`PLANNER_MAX_BEAMS`] beams; `max_range` in cells. Any result but
-/// `PLANNER_RESULT_OK` and `PLANNER_RESULT_OFF_GRID` changes nothing.
+/// The direction `radians` from the robot's heading; grows from east to south. Make it
+/// once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
+/// finite gives a direction whose beams say nothing.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
+    Bearing::from_radians(radians).into()
+}
+
+/// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
+/// most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
+/// `PLANNER_RESULT_OFF_GRID` changes nothing.
+///
+/// `max_range`: distance in cells up to which every obstacle gives a measurement.
+///
+/// `tolerance`: how far, in cells, the end of a beam may lie from where it is reported,
+/// 0 to 0.25: (range error + position error + max_range × heading error) / side of a
+/// cell, rounding among the errors. `PLANNER_TOLERANCE` is the usual one.
 ///
 /// What the proof of completeness needs of looks, of scans and of cells: standing on a
 /// free cell, looks (after a turn where `wait` says `PLANNER_WAIT_LOOK`) must in the end
@@ -92,32 +108,27 @@ pub extern "C" fn planner_observe_scan(
     planner: *mut Planner,
     pose: *const PlannerPose,
     max_range: f32,
+    tolerance: f32,
     beams: *const PlannerBeam,
     count: usize,
 ) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
         let pose = input(pose)?;
-        let nothing = Beam {
-            bearing: 0.0,
-            range: f32::NAN,
-        };
-        let mut measured = [nothing; PLANNER_MAX_BEAMS];
-        let given = inputs(beams, count)?;
-        let places = measured.get_mut(..given.len());
-        for (beam, given) in places.ok_or(PlannerResult::TooMany)?.iter_mut().zip(given) {
-            beam.bearing = given.bearing;
-            beam.range = given.range;
-        }
         let scan = RangeScan {
             pose: pose.into(),
-            max_range,
-            beams: &measured,
+            sensor: RangeSensor {
+                max_range,
+                tolerance,
+            },
+            beams: inputs(beams, count)?.iter().filter_map(PlannerBeam::read),
         };
         let sighting = scan.sighting().or_else(|error| match error {
             // Farther than cells have names.
             ScanError::Pose if pose.is_finite() => Ok(Sighting::new(Cell::new(-1, -1))),
-            ScanError::Pose | ScanError::MaxRange => Err(PlannerResult::Scan),
+            ScanError::Pose | ScanError::MaxRange | ScanError::Tolerance => {
+                Err(PlannerResult::Scan)
+            }
         })?;
         observe(&mut robot.explorer, &sighting)
     })

@@ -58,8 +58,8 @@ fn null_is_answered() {
     for result in [
         planner_create(null_mut(), &CONFIG),
         planner_create(ready, null()),
-        planner_observe_scan(ready, null(), 4.0, null(), 0),
-        planner_observe_scan(ready, &pose, 4.0, null(), 1),
+        planner_observe_scan(ready, null(), 4.0, 0.1, null(), 0),
+        planner_observe_scan(ready, &pose, 4.0, 0.1, null(), 1),
         planner_observe_cells(null_mut(), centre, null(), 0),
         planner_observe_cells(ready, centre, null(), 1),
         planner_tick(null_mut(), &mut action),
@@ -98,8 +98,8 @@ fn misaligned_is_answered() {
     let centre = CONFIG.start;
     for result in [
         planner_create(ready, crooked.cast()),
-        planner_observe_scan(ready, crooked.cast(), 4.0, null(), 0),
-        planner_observe_scan(ready, &pose, 4.0, crooked.cast(), 1),
+        planner_observe_scan(ready, crooked.cast(), 4.0, 0.1, null(), 0),
+        planner_observe_scan(ready, &pose, 4.0, 0.1, crooked.cast(), 1),
         planner_observe_cells(ready, centre, crooked.cast(), 1),
         planner_tick(ready, crooked.cast()),
         planner_transmit(ready, straight.cast(), crooked.cast()),
@@ -143,15 +143,16 @@ fn memory_without_a_planner_and_values_out_of_range_are_answered() {
         heading: 0.0,
     };
     assert_eq!(
-        planner_observe_scan(ready, &pose, 4.0, null(), 0),
+        planner_observe_scan(ready, &pose, 4.0, 0.1, null(), 0),
         PlannerResult::Scan
     );
-    let beams = [PlannerBeam {
-        bearing: 0.0,
-        range: 1.0,
-    }; PLANNER_MAX_BEAMS + 1];
     let pose = PlannerPose { x: 1.5, ..pose };
-    let scan = planner_observe_scan(ready, &pose, 4.0, beams.as_ptr(), beams.len());
+    for (max_range, tolerance) in [(0.0, 0.1), (f32::NAN, 0.1), (4.0, -0.1), (4.0, 0.3)] {
+        let scan = planner_observe_scan(ready, &pose, max_range, tolerance, null(), 0);
+        assert_eq!(scan, PlannerResult::Scan);
+    }
+    let beam = beam(0.0, 1.0);
+    let scan = planner_observe_scan(ready, &pose, 4.0, 0.1, &beam, usize::MAX);
     assert_eq!(scan, PlannerResult::TooMany);
     assert_eq!(
         planner_receive(ready, [0; 9].as_ptr(), 9),
@@ -259,18 +260,65 @@ fn a_planner_that_may_send_nothing_says_so() {
     }
 }
 
+fn beam(radians: f32, range: f32) -> PlannerBeam {
+    PlannerBeam {
+        bearing: planner_bearing(radians),
+        range,
+    }
+}
+
+/// A hundred beams to the east; those that point nowhere, and those without a
+/// measurement, say nothing.
+#[test]
+fn beams_show_cells_and_bad_ones_nothing() {
+    let known_after = |beams: &[PlannerBeam]| {
+        let mut memory = memory();
+        let ready = created(&mut memory, CONFIG);
+        let pose = PlannerPose {
+            x: 1.5,
+            y: 1.5,
+            heading: 0.0,
+        };
+        let (length, (mut known, mut frontiers)) = (beams.len(), (0, 0));
+        let scan = planner_observe_scan(ready, &pose, 4.0, 0.1, beams.as_ptr(), length);
+        assert_eq!(scan, PlannerResult::Ok);
+        planner_known(ready, &mut known, &mut frontiers);
+        known
+    };
+    assert_eq!(known_after(&[beam(0.0, 1.0)]), 2);
+    assert_eq!(known_after(&[beam(0.0, 2.5); 100]), 4);
+    assert_eq!(known_after(&[beam(0.0, f32::INFINITY)]), 5);
+    let long = PlannerBearing {
+        ahead: 1.0,
+        right: 0.1,
+    };
+    let zero = PlannerBearing {
+        ahead: 0.0,
+        right: 0.0,
+    };
+    for bearing in [long, zero, planner_bearing(f32::NAN)] {
+        assert_eq!(
+            known_after(&[PlannerBeam {
+                bearing,
+                range: 2.5
+            }]),
+            1
+        );
+    }
+    for range in [f32::NAN, -1.0] {
+        assert_eq!(known_after(&[beam(0.0, range)]), 1);
+    }
+}
+
 #[test]
 fn off_the_grid_nothing_is_decided() {
     let mut memory = memory();
     let ready = created(&mut memory, CONFIG);
     assert_eq!(look(ready, CONFIG.start), PlannerResult::Ok);
-    let beam = PlannerBeam {
-        bearing: 0.0,
-        range: 1.0,
-    };
+    let beam = beam(0.0, 1.0);
     let scan = |x, y| {
         let pose = PlannerPose { x, y, heading: 0.0 };
-        planner_observe_scan(ready, &pose, 4.0, &beam, 1)
+        planner_observe_scan(ready, &pose, 4.0, 0.1, &beam, 1)
     };
     let (mut known, mut frontiers) = (0, 0);
     planner_known(ready, &mut known, &mut frontiers);

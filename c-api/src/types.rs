@@ -1,7 +1,7 @@
 //! The plain data of the interface.
 
 use planner_core::radio::FrameError;
-use planner_core::sight::Pose;
+use planner_core::sight::{Beam, Bearing, Pose};
 use planner_core::{Action, Direction, Reason, Wait};
 
 /// What came of a call.
@@ -19,7 +19,8 @@ pub enum PlannerResult {
     /// The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
     /// off the grid.
     Extent = 4,
-    /// The scan's pose is not a number, or its largest range is not a positive one.
+    /// The scan's pose is not a number, its largest range is not a positive one, or its
+    /// tolerance is not between 0 and 0.25.
     Scan = 5,
     /// More values than a call takes.
     TooMany = 6,
@@ -112,16 +113,28 @@ pub struct PlannerPose {
     pub x: f32,
     /// Position along y, in cells.
     pub y: f32,
-    /// Direction of bearing 0, in radians; grows from east to south.
+    /// Direction of the bearing that is straight ahead, in radians; grows from east to
+    /// south.
     pub heading: f32,
+}
+
+/// A direction relative to the heading, as a vector of length 1; `planner_bearing` makes
+/// it of an angle. A beam whose vector is longer or shorter by 0.001 says nothing.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct PlannerBearing {
+    /// Its part along the heading: 1 is straight ahead.
+    pub ahead: f32,
+    /// Its part to the right of the heading.
+    pub right: f32,
 }
 
 /// One distance measured.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct PlannerBeam {
-    /// Direction relative to the heading, in radians; grows from east to south.
-    pub bearing: f32,
+    /// Where it pointed to.
+    pub bearing: PlannerBearing,
     /// Distance to what was hit, in cells. Infinite, or not below `max_range`: nothing
     /// within reach, so what lies on the beam is free. Negative or not a number: no
     /// measurement, which says nothing about any cell. Never give one for the other.
@@ -269,6 +282,25 @@ impl From<&PlannerPose> for Pose {
             y: pose.y,
             heading: pose.heading,
         }
+    }
+}
+
+impl From<Bearing> for PlannerBearing {
+    fn from(bearing: Bearing) -> Self {
+        Self {
+            ahead: bearing.ahead(),
+            right: bearing.right(),
+        }
+    }
+}
+
+impl PlannerBeam {
+    /// `None`: it points nowhere.
+    pub(crate) fn read(&self) -> Option<Beam> {
+        Some(Beam {
+            bearing: Bearing::from_unit(self.bearing.ahead, self.bearing.right)?,
+            range: self.range,
+        })
     }
 }
 

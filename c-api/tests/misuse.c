@@ -43,7 +43,7 @@ static void nothing_is_created(Planner *planner) {
     uint32_t known, frontiers;
     bool is_mute;
     PlannerResult wanted = PLANNER_RESULT_NOT_CREATED;
-    CHECK(planner_observe_scan(planner, &pose, 5, NULL, 0), wanted);
+    CHECK(planner_observe_scan(planner, &pose, 5, PLANNER_TOLERANCE, NULL, 0), wanted);
     CHECK(planner_observe_cells(planner, (PlannerCell){5, 5}, NULL, 0), wanted);
     CHECK(planner_tick(planner, &action), wanted);
     CHECK(planner_report(planner, PLANNER_MOVED), wanted);
@@ -112,12 +112,12 @@ static void odd_pointers_and_counts(Planner *planner) {
     free(block);
     CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
     PlannerPose pose = {5.5f, 5.5f, 0};
-    PlannerBeam *beams = calloc(PLANNER_MAX_BEAMS, sizeof *beams);
+    enum { BEAMS = 1000 };
+    PlannerBeam *beams = calloc(BEAMS, sizeof *beams);
     PlannerSeen *seen = calloc(1, sizeof *seen);
-    CHECK(planner_observe_scan(planner, &pose, 5, beams, PLANNER_MAX_BEAMS), PLANNER_RESULT_OK);
-    CHECK(planner_observe_scan(planner, &pose, 5, beams, PLANNER_MAX_BEAMS + 1), PLANNER_RESULT_TOO_MANY);
-    CHECK(planner_observe_scan(planner, &pose, 5, beams, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
-    CHECK(planner_observe_scan(planner, &pose, 5, NULL, 3), PLANNER_RESULT_NULL);
+    CHECK(planner_observe_scan(planner, &pose, 5, PLANNER_TOLERANCE, beams, BEAMS), PLANNER_RESULT_OK);
+    CHECK(planner_observe_scan(planner, &pose, 5, PLANNER_TOLERANCE, beams, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_observe_scan(planner, &pose, 5, PLANNER_TOLERANCE, NULL, 3), PLANNER_RESULT_NULL);
     CHECK(planner_observe_cells(planner, config.start, seen, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
     CHECK(planner_observe_cells(planner, config.start, NULL, 1), PLANNER_RESULT_NULL);
     CHECK(planner_receive(planner, (uint8_t *)seen, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
@@ -131,20 +131,28 @@ static void odd_numbers(Planner *planner) {
     static const float ODD[] = {NAN, INFINITY, -INFINITY, -1, 0, 1e38f, -1e38f, 1e-45f, 3e9f, 65536};
     PlannerConfig config = usual();
     for (size_t i = 0; i < sizeof ODD / sizeof *ODD; i++) {
-        for (int field = 0; field < 6; field++) {
+        for (int field = 0; field < 9; field++) {
             PlannerPose pose = {5.5f, 5.5f, 0};
-            PlannerBeam beams[3] = {{0, 2}, {1, 2}, {2, 2}};
-            float range = 5;
-            float *fields[6] = {&pose.x, &pose.y, &pose.heading, &range, &beams[1].range, &beams[1].bearing};
+            PlannerBeam beams[3] = {{{1, 0}, 2}, {planner_bearing(1), 2}, {planner_bearing(2), 2}};
+            float range = 5, tolerance = PLANNER_TOLERANCE, angle = 1;
+            float *fields[9] = {&pose.x,         &pose.y,
+                                &pose.heading,   &range,
+                                &beams[1].range, &beams[1].bearing.ahead,
+                                &beams[1].bearing.right, &angle,
+                                &tolerance};
             *fields[field] = ODD[i];
             CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
-            PlannerResult result = planner_observe_scan(planner, &pose, range, beams, 3);
+            if (field == 7) {
+                beams[1].bearing = planner_bearing(angle);
+            }
+            PlannerResult result = planner_observe_scan(planner, &pose, range, tolerance, beams, 3);
             bool is_off_grid = field < 2 && isfinite(ODD[i]) && (ODD[i] < 0 || ODD[i] >= 20);
             bool is_odd = field < 4 && !isfinite(ODD[i]);
             bool is_no_range = field == 3 && !(ODD[i] > 0);
+            bool is_no_tolerance = field == 8 && !(ODD[i] >= 0 && ODD[i] <= 0.25f);
             CHECK(result, is_off_grid              ? PLANNER_RESULT_OFF_GRID
-                          : is_odd || is_no_range ? PLANNER_RESULT_SCAN
-                                                  : PLANNER_RESULT_OK);
+                          : is_odd || is_no_range || is_no_tolerance ? PLANNER_RESULT_SCAN
+                                                                     : PLANNER_RESULT_OK);
             PlannerAction action;
             CHECK(planner_tick(planner, &action), PLANNER_RESULT_OK);
             if (result != PLANNER_RESULT_OK) {

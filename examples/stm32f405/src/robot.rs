@@ -11,7 +11,7 @@ use planner_core::sight::{Pose, RangeScan};
 use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId, Wait};
 use static_cell::ConstStaticCell;
 
-use crate::rangers::{CELL_MM, MAX_RANGE, Rangers};
+use crate::rangers::{CELL_MM, Rangers, SENSOR};
 use crate::wheels::Wheels;
 
 /// The planner's whole memory, for a map of 64×64 cells: 16×16 metres.
@@ -41,8 +41,8 @@ where
     loop {
         let scan = RangeScan {
             pose: pose(position, heading),
-            max_range: MAX_RANGE,
-            beams: &rangers.scan(),
+            sensor: SENSOR,
+            beams: rangers.scan(),
         };
         match scan.sighting() {
             Ok(sighting) => {

@@ -7,7 +7,7 @@ use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::Map;
 use planner_core::radio::MAX_LEN;
 use planner_core::role::exchange;
-use planner_core::sight::{Beam, Pose, RangeScan, look};
+use planner_core::sight::{Beam, Bearing, Pose, RangeScan, RangeSensor, look};
 use planner_core::tile::TileIndex;
 use planner_core::{Activity, AnyPlanner, Contact, Motion, Planner, Sighting, Status};
 use static_cell::ConstStaticCell;
@@ -79,7 +79,7 @@ fn ask<const TW: usize, const TH: usize>(own: &Map<TW, TH>, other: &Map<TW, TH>)
 
 fn scan() -> Option<Sighting> {
     let beams = black_box([Beam {
-        bearing: 0.0,
+        bearing: Bearing::from_radians(1.0),
         range: 1.0,
     }]);
     let scan = RangeScan {
@@ -88,8 +88,8 @@ fn scan() -> Option<Sighting> {
             y: 0.5,
             heading: 0.0,
         }),
-        max_range: black_box(4.0),
-        beams: &beams,
+        sensor: black_box(RangeSensor::new(4.0)),
+        beams,
     };
     scan.sighting().ok()
 }

@@ -3,11 +3,14 @@
 //! A sighting comes from a range scan ([`RangeScan`]) on a robot, or from
 //! [`look`] where the world is at hand (simulator, tests).
 
+mod beam;
 mod line;
 mod scan;
+mod walk;
 
+pub use beam::{Beam, Bearing, RangeSensor};
 pub use line::{line_of_sight, look};
-pub use scan::{Beam, Pose, RangeScan, ScanError};
+pub use scan::{Pose, RangeScan, ScanError};
 
 use crate::cell::Cell;
 use crate::tile::{TILE, TileIndex};
@@ -22,16 +25,20 @@ const _: () = assert!(
     "a row of a sighting is a u32: MAX_RADIUS is at most 15"
 );
 
+const WHOLE_ROW: u32 = (1 << SPAN) - 1;
+
 /// Cells seen from `centre`, within [`MAX_RADIUS`] in both axes.
 ///
 /// Bit `x - centre.x + 15` of row `y - centre.y + 15` is the cell `(x, y)`. No
-/// cell is both free and blocked: blocked wins. 252 bytes.
+/// cell is both free and blocked: blocked wins. A cell that was seen blocked more than
+/// once, by two beams of a scan for example, is *firm*. 376 bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sighting {
     centre: Cell,
     free: [u32; SPAN],
     blocked: [u32; SPAN],
+    firm: [u32; SPAN],
 }
 
 impl Sighting {
@@ -43,6 +50,7 @@ impl Sighting {
             centre,
             free,
             blocked: [0; SPAN],
+            firm: [0; SPAN],
         }
     }
 
@@ -60,29 +68,47 @@ impl Sighting {
         }
     }
 
-    /// Adds a cell seen blocked. Ignored beyond the radius and for the robot's own cell.
+    /// Adds a cell seen blocked; seen so before, it is firm. Ignored beyond the radius and
+    /// for the robot's own cell.
     pub fn see_blocked(&mut self, cell: Cell) {
         if cell == self.centre {
             return;
         }
         if let Some((row, bit)) = self.place(cell)
-            && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get_mut(row))
+            && let Some(free) = self.free.get_mut(row)
+            && let (Some(blocked), Some(firm)) = (self.blocked.get_mut(row), self.firm.get_mut(row))
         {
+            *firm |= *blocked & bit;
             *blocked |= bit;
             *free &= !bit;
         }
     }
 
+    /// Blocked wins, also where cells were seen free past [`see_free`](Self::see_free).
+    fn settle(&mut self) {
+        for (free, blocked) in self.free.iter_mut().zip(&self.blocked) {
+            *free &= WHOLE_ROW & !blocked;
+        }
+    }
+
     /// Whether the cell was seen free.
     pub fn is_free(&self, cell: Cell) -> bool {
-        self.place(cell)
-            .is_some_and(|(row, bit)| self.free.get(row).is_some_and(|free| free & bit != 0))
+        self.has(cell, &self.free)
     }
 
     /// Whether the cell was seen blocked.
     pub fn is_blocked(&self, cell: Cell) -> bool {
+        self.has(cell, &self.blocked)
+    }
+
+    /// Whether the cell was seen blocked more than once.
+    pub fn is_firm(&self, cell: Cell) -> bool {
+        self.has(cell, &self.firm)
+    }
+
+    fn has(&self, cell: Cell, rows: &[u32; SPAN]) -> bool {
         self.place(cell)
-            .is_some_and(|(row, bit)| self.blocked.get(row).is_some_and(|seen| seen & bit != 0))
+            .is_some_and(|(row, bit)| rows.get(row).is_some_and(|row| row & bit != 0))
     }
 
     /// The cells seen free, row by row. At most 961.
@@ -141,24 +167,33 @@ impl Sighting {
         ((west, north), side as u8)
     }
 
-    /// The cells of one tile seen free and seen blocked. Work: eight rows.
+    /// The cells of one tile seen free and seen blocked. Work: twice eight rows.
     pub(crate) fn tile(&self, at: TileIndex) -> (u64, u64) {
+        (
+            self.in_tile(at, &self.free),
+            self.in_tile(at, &self.blocked),
+        )
+    }
+
+    /// The firm cells of one tile. Work: eight rows.
+    #[allow(dead_code)]
+    pub(crate) fn firm_tile(&self, at: TileIndex) -> u64 {
+        self.in_tile(at, &self.firm)
+    }
+
+    fn in_tile(&self, at: TileIndex, rows: &[u32; SPAN]) -> u64 {
         let (x, y) = self.corner();
         let dx = i32::from(at.x) * TILE as i32 - i32::from(x);
         let dy = i32::from(at.y) * TILE as i32 - i32::from(y);
-        let (mut free, mut blocked) = (0, 0);
+        let mut cells = 0;
         for row in 0..TILE as i32 {
-            let Ok(index) = usize::try_from(dy + row) else {
-                continue;
-            };
-            if let (Some(&seen_free), Some(&seen_blocked)) =
-                (self.free.get(index), self.blocked.get(index))
+            if let Ok(index) = usize::try_from(dy + row)
+                && let Some(&seen) = rows.get(index)
             {
-                free |= u64::from(byte_at(seen_free, dx)) << (row * TILE as i32);
-                blocked |= u64::from(byte_at(seen_blocked, dx)) << (row * TILE as i32);
+                cells |= u64::from(byte_at(seen, dx)) << (row * TILE as i32);
             }
         }
-        (free, blocked)
+        cells
     }
 }
 

@@ -3,7 +3,8 @@
 
 use core::fmt;
 
-use super::{MAX_RADIUS, Sighting};
+use super::walk::Eye;
+use super::{Beam, RangeSensor, Sighting};
 use crate::cell::Cell;
 use crate::math;
 
@@ -15,30 +16,43 @@ pub struct Pose {
     pub x: f32,
     /// Position along `y`, in cells.
     pub y: f32,
-    /// Direction that bearing 0 points to, in radians; grows from east to south.
+    /// Direction that [`Bearing::AHEAD`](super::Bearing::AHEAD) points to, in radians;
+    /// grows from east to south.
     pub heading: f32,
 }
 
-/// One distance measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Beam {
-    /// Direction relative to the heading, in radians; grows from east to south.
-    pub bearing: f32,
-    /// Distance to what was hit, in cells. Not below the scan's `max_range`, or
-    /// infinite: nothing was hit. Negative or not a number: no measurement.
-    pub range: f32,
-}
-
 /// A scan: beams taken from one pose.
+///
+/// In a world of whole cells, free or blocked, and with errors within the sensor's
+/// tolerance, no scan tells a blocked cell free or a free cell blocked.
+///
+/// ```
+/// use planner_core::Cell;
+/// use planner_core::sight::{Beam, Bearing, Pose, RangeScan, RangeSensor};
+///
+/// let scan = RangeScan {
+///     pose: Pose { x: 5.5, y: 5.5, heading: 0.0 },
+///     sensor: RangeSensor::new(4.0),
+///     beams: [
+///         Beam { bearing: Bearing::AHEAD, range: 2.5 },
+///         Beam { bearing: Bearing::LEFT, range: f32::INFINITY }, // nothing within reach
+///         Beam { bearing: Bearing::RIGHT, range: f32::NAN },     // no measurement
+///     ],
+/// };
+/// let sighting = scan.sighting()?;
+/// assert!(sighting.is_free(Cell::new(7, 5)) && sighting.is_blocked(Cell::new(8, 5)));
+/// assert!(sighting.is_free(Cell::new(5, 2)));
+/// assert!(!sighting.is_free(Cell::new(5, 6)) && !sighting.is_blocked(Cell::new(5, 6)));
+/// # Ok::<(), planner_core::sight::ScanError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
-pub struct RangeScan<'a> {
+pub struct RangeScan<I> {
     /// Where the sensor was.
     pub pose: Pose,
-    /// Distance in cells up to which the sensor measures.
-    pub max_range: f32,
-    /// The measurements, in any order.
-    pub beams: &'a [Beam],
+    /// What it can do.
+    pub sensor: RangeSensor,
+    /// The measurements, in any order: an array, or anything that yields [`Beam`]s.
+    pub beams: I,
 }
 
 /// A scan that says nothing about any cell.
@@ -49,130 +63,58 @@ pub enum ScanError {
     Pose,
     /// The largest range is not a positive, finite number.
     MaxRange,
+    /// The tolerance is not a number from 0 to [`RangeSensor::MAX_TOLERANCE`].
+    Tolerance,
 }
 
 impl fmt::Display for ScanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Pose => "the pose of the scan is not finite or too far from the origin",
-            Self::MaxRange => "the largest range of the scan is not a positive number",
+            Self::MaxRange => "the largest range of the sensor is not a positive number",
+            Self::Tolerance => "the tolerance of the sensor is not between 0 and 0.25 cells",
         })
     }
 }
 
 impl core::error::Error for ScanError {}
 
-/// A hit this near (in cells) to the border between two cells is taken to be on
-/// the border: the surface of the obstacle behind it.
-const SURFACE: f32 = 0.02;
-
 /// Limit of the coordinates, well inside `i16`.
 const FARTHEST: f32 = 16_000.0;
 
-impl RangeScan<'_> {
-    /// The cells that the beams crossed and those that they hit. A hit in the
-    /// corner between cells says nothing, for it is not clear which one was hit.
-    /// Beams end at [`MAX_RADIUS`] cells.
+impl<I: IntoIterator<Item = Beam>> RangeScan<I> {
+    /// The cells that the beams crossed, free, and those that they hit, blocked; firm if
+    /// two of them did. A cell that was both crossed and hit is blocked. A hit in the
+    /// corner between cells, or on a wall that the beam only grazes, says nothing of what
+    /// was hit. Beams end at [`MAX_RADIUS`](super::MAX_RADIUS) cells.
     ///
-    /// Work: at most `2·15 + 3` cells a beam.
+    /// Work: a sine and a cosine, and at most `2·15 + 2` cells a beam, none of them with a
+    /// division; `fixtures/budget.txt` has what that takes.
     ///
     /// # Errors
-    /// The pose or the largest range is not usable; a bad beam is only left out.
-    pub fn sighting(&self) -> Result<Sighting, ScanError> {
-        let Pose { x, y, heading } = self.pose;
+    /// The pose or the sensor is not usable; a bad beam is only left out.
+    pub fn sighting(self) -> Result<Sighting, ScanError> {
+        let (Pose { x, y, heading }, sensor) = (self.pose, self.sensor);
         let usable = |v: f32| v.is_finite() && (-FARTHEST..FARTHEST).contains(&v);
         if !(usable(x) && usable(y) && heading.is_finite()) {
             return Err(ScanError::Pose);
         }
-        if !(self.max_range.is_finite() && self.max_range > 0.0) {
+        if !(sensor.max_range.is_finite() && sensor.max_range > 0.0) {
             return Err(ScanError::MaxRange);
         }
-        let centre = Cell::new(math::floor(x) as i16, math::floor(y) as i16);
-        let mut sighting = Sighting::new(centre);
-        for beam in self.beams {
-            self.cast(&mut sighting, *beam);
+        if !(0.0..=RangeSensor::MAX_TOLERANCE).contains(&sensor.tolerance) {
+            return Err(ScanError::Tolerance);
         }
+        let (column, row) = (math::floor(x), math::floor(y));
+        let mut sighting = Sighting::new(Cell::new(column as i16, row as i16));
+        let eye = Eye::new(x - column, y - row, sensor.tolerance);
+        let (sin, cos) = math::direction(heading);
+        for Beam { bearing, range } in self.beams {
+            let (ahead, right) = (bearing.ahead(), bearing.right());
+            let direction = (ahead * cos - right * sin, ahead * sin + right * cos);
+            eye.cast(&mut sighting, direction, range, sensor.max_range);
+        }
+        sighting.settle();
         Ok(sighting)
-    }
-
-    fn cast(&self, sighting: &mut Sighting, beam: Beam) {
-        if beam.range.is_nan() || beam.range < 0.0 || !beam.bearing.is_finite() {
-            return;
-        }
-        let reach = self.max_range.min(f32::from(MAX_RADIUS));
-        let hit = beam.range < self.max_range && beam.range <= f32::from(MAX_RADIUS);
-        let length = if hit { beam.range } else { reach };
-        let angle = self.pose.heading + beam.bearing;
-        let mut cell = sighting.centre();
-        let (sin, cos) = math::exact_sin_cos(angle);
-        let mut along_x = Axis::new(self.pose.x, cos);
-        let mut along_y = Axis::new(self.pose.y, sin);
-
-        // A beam crosses at most 15 columns and 15 rows, and one more of each at its end.
-        for _ in 0..2 * (u32::from(MAX_RADIUS) + 1) {
-            let (next, other) = if along_x.crossing < along_y.crossing {
-                (along_x.crossing, along_y.crossing)
-            } else {
-                (along_y.crossing, along_x.crossing)
-            };
-            if next > length + SURFACE {
-                // The beam ends inside of this cell: what it hit stands in it.
-                if hit {
-                    sighting.see_blocked(cell);
-                }
-                return;
-            }
-            let at_corner = other - next <= SURFACE;
-            if along_x.crossing <= along_y.crossing {
-                cell.x = cell.x.saturating_add(along_x.cross());
-            } else {
-                cell.y = cell.y.saturating_add(along_y.cross());
-            }
-            if hit && next >= length - SURFACE {
-                if !at_corner {
-                    sighting.see_blocked(cell);
-                }
-                return;
-            }
-            // Free if the beam leaves the cell again; at the end of its reach also
-            // if it got half a cell into it.
-            let leaves = along_x.crossing.min(along_y.crossing);
-            let through = leaves <= length + SURFACE;
-            if leaves - next > SURFACE && (through || !hit && length - next > 0.5 - SURFACE) {
-                sighting.see_free(cell);
-            }
-        }
-    }
-}
-
-/// One coordinate of a beam: at which distance it enters the next cell.
-struct Axis {
-    step: i16,
-    crossing: f32,
-    spacing: f32,
-}
-
-impl Axis {
-    fn new(position: f32, slope: f32) -> Self {
-        // Below this a beam of 15 cells does not leave its row.
-        if slope.abs() < 1e-6 {
-            return Self {
-                step: 0,
-                crossing: f32::INFINITY,
-                spacing: f32::INFINITY,
-            };
-        }
-        let inside = position - math::floor(position);
-        let to_border = if slope > 0.0 { 1.0 - inside } else { inside };
-        Self {
-            step: if slope > 0.0 { 1 } else { -1 },
-            crossing: to_border / slope.abs(),
-            spacing: 1.0 / slope.abs(),
-        }
-    }
-
-    fn cross(&mut self) -> i16 {
-        self.crossing += self.spacing;
-        self.step
     }
 }

@@ -5,7 +5,7 @@ use core::fmt::{self, Write as _};
 
 use cortex_m_semihosting::hio;
 use firmware::Stopwatch;
-use planner_core::sight::{Beam, MAX_RADIUS, Pose, RangeScan};
+use planner_core::sight::{Beam, Bearing, MAX_RADIUS, Pose, RangeScan, RangeSensor};
 
 use crate::Most;
 
@@ -26,14 +26,16 @@ pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
 fn convert(stopwatch: &Stopwatch, count: u8) -> Most {
     let mut most = Most::default();
     let reach = f32::from(MAX_RADIUS);
+    let mut beams = [Beam {
+        bearing: Bearing::AHEAD,
+        range: f32::INFINITY,
+    }; 64];
+    for (index, beam) in (0..count).zip(&mut beams) {
+        beam.bearing = Bearing::from_radians(TAU * f32::from(index) / f32::from(count));
+    }
     for number in 0..SCANS {
         let share = f32::from(number) / f32::from(SCANS);
-        let mut beams = [Beam {
-            bearing: 0.0,
-            range: f32::NAN,
-        }; 64];
-        for (index, beam) in (0..count).zip(&mut beams) {
-            beam.bearing = TAU * f32::from(index) / f32::from(count);
+        for beam in &mut beams {
             beam.range = if number % 2 == 0 {
                 f32::INFINITY
             } else {
@@ -44,11 +46,12 @@ fn convert(stopwatch: &Stopwatch, count: u8) -> Most {
             pose: Pose {
                 x: 64.0 + share,
                 y: 64.0 + 7.0 * share % 1.0,
-                // Diagonals cross most cells; the rest is tried for good measure.
-                heading: TAU / 8.0 * (1.0 + share / 4.0),
+                // Diagonals cross most cells; the rest is tried for good measure, and
+                // every eighth of the circle.
+                heading: TAU / 8.0 * (f32::from(number % 8) - 4.0 + share / 4.0),
             },
-            max_range: reach + 1.0,
-            beams: beams.get(..count.into()).unwrap_or(&[]),
+            sensor: RangeSensor::new(reach + 1.0),
+            beams: beams.iter().take(count.into()).copied(),
         };
         let sighting = most.of(stopwatch, || scan.sighting());
         core::hint::black_box(sighting.is_ok());

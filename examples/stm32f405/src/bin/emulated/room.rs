@@ -24,8 +24,10 @@ const WALLS: [&[u8]; 9] = [
     b"############",
 ];
 
-/// The first sensor that is asked for the second time does not answer.
+/// The first sensor that is asked for the second time does not answer, the next one has
+/// too weak a signal.
 const SILENT_AT: u32 = 4;
+const WEAK_AT: u32 = 5;
 
 /// Where the robot is, and what its motors do.
 pub(crate) struct Room {
@@ -89,13 +91,13 @@ impl Room {
     }
 
     /// Centimetres from the robot to the wall.
-    fn distance(&self, bearing: u8) -> u16 {
+    fn distance(&self, bearing: u8) -> i16 {
         let (mut at, mut millimetres) = (self.at.get(), CELL_MM / 2);
         while let Some(next) = Self::beside(at, self.heading.get() + bearing) {
             at = next;
             millimetres += CELL_MM;
         }
-        millimetres / 10
+        (millimetres / 10) as i16
     }
 }
 
@@ -117,7 +119,11 @@ impl I2c for Bus<'_> {
         if asked == SILENT_AT {
             return Err(ErrorKind::NoAcknowledge(NoAcknowledgeSource::Address));
         }
-        let [low, high] = self.0.distance(address & 3).to_le_bytes();
+        let distance = match asked {
+            WEAK_AT => -1,
+            _ => self.0.distance(address & 3),
+        };
+        let [low, high] = distance.to_le_bytes();
         for operation in operations {
             if let Operation::Read(answer) = operation {
                 let whole = [0x59, 0x59, low, high, 0, 0, 0, 0, 0];

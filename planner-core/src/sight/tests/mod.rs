@@ -1,0 +1,107 @@
+mod scan;
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::cell::Extent;
+
+const EXTENT: Extent = Extent::new(24, 24);
+
+fn walls() -> impl Strategy<Value = Vec<bool>> {
+    (0.0..0.5f64).prop_flat_map(|share| {
+        proptest::collection::vec(proptest::bool::weighted(share), EXTENT.cells() as usize)
+    })
+}
+
+fn blocked_in(walls: &[bool]) -> impl Fn(Cell) -> bool + '_ {
+    |cell| !EXTENT.contains(cell) || walls[cell.y as usize * 24 + cell.x as usize]
+}
+
+fn cell() -> impl Strategy<Value = Cell> {
+    (0i16..24, 0i16..24).prop_map(|(x, y)| Cell::new(x, y))
+}
+
+/// Line of sight in exact rational geometry: the open segment between the centres
+/// meets the interior of no blocked cell, and no corner whose two cells beside
+/// the segment are both blocked.
+fn exact_line_of_sight(from: Cell, to: Cell, is_blocked: &impl Fn(Cell) -> bool) -> bool {
+    let (dx, dy) = (i32::from(to.x - from.x), i32::from(to.y - from.y));
+    let (west, east) = (from.x.min(to.x), from.x.max(to.x));
+    let (north, south) = (from.y.min(to.y), from.y.max(to.y));
+    let side = |corner_x: i32, corner_y: i32| dx * corner_y - dy * corner_x;
+    for y in north..=south {
+        for x in west..=east {
+            // Corners relative to the centre of `from`, doubled.
+            let (cx, cy) = (2 * i32::from(x - from.x), 2 * i32::from(y - from.y));
+            let sides = [(-1, -1), (1, -1), (-1, 1), (1, 1)].map(|(a, b)| side(cx + a, cy + b));
+            let crosses = sides.iter().any(|&s| s > 0) && sides.iter().any(|&s| s < 0);
+            let cell = Cell::new(x, y);
+            if crosses && cell != from && cell != to && is_blocked(cell) {
+                return false;
+            }
+            // The south-eastern and the south-western corner of this cell.
+            for (a, diagonal) in [(1i16, dx * dy > 0), (-1, dx * dy < 0)] {
+                let inside = x + a >= west && x + a <= east && y < south;
+                if diagonal && inside && side(cx + i32::from(a), cy + 1) == 0 {
+                    let beside = (Cell::new(x + a, y), Cell::new(x, y + 1));
+                    if is_blocked(beside.0) && is_blocked(beside.1) {
+                        return false;
+                    }
+                }
+            }
+        }
+    }
+    true
+}
+
+proptest! {
+    #[test]
+    fn sight_is_symmetric(walls in walls(), a in cell(), b in cell()) {
+        let blocked = blocked_in(&walls);
+        prop_assert_eq!(line_of_sight(a, b, &blocked), line_of_sight(b, a, &blocked));
+    }
+
+    #[test]
+    fn sight_is_what_geometry_says(walls in walls(), a in cell(), b in cell()) {
+        let blocked = blocked_in(&walls);
+        prop_assert_eq!(line_of_sight(a, b, &blocked), exact_line_of_sight(a, b, &blocked));
+    }
+
+    #[test]
+    fn a_look_holds_exactly_the_disc_in_sight(walls in walls(), centre in cell(), radius in 1u8..=15) {
+        let blocked = blocked_in(&walls);
+        let sighting = look(centre, radius, &blocked);
+        for y in -20..44 {
+            for x in -20..44 {
+                let cell = Cell::new(x, y);
+                let seen = cell.distance_squared(centre) <= u32::from(radius) * u32::from(radius)
+                    && line_of_sight(centre, cell, &blocked);
+                let free = !blocked(cell) || cell == centre;
+                prop_assert_eq!(sighting.is_free(cell), seen && free);
+                prop_assert_eq!(sighting.is_blocked(cell), seen && !free);
+            }
+        }
+        prop_assert_eq!(sighting.free_cells().filter(|&c| !sighting.is_free(c)).count(), 0);
+    }
+}
+
+#[test]
+fn what_is_told_blocked_twice_is_firm() {
+    let mut sighting = Sighting::new(Cell::new(12, 12));
+    let cell = Cell::new(9, 20);
+    sighting.see_blocked(cell);
+    assert!(sighting.is_blocked(cell) && !sighting.is_firm(cell));
+    sighting.see_free(cell);
+    assert!(!sighting.is_free(cell));
+    sighting.see_blocked(cell);
+    assert!(sighting.is_blocked(cell) && sighting.is_firm(cell));
+    let tile = TileIndex { x: 1, y: 2 };
+    assert_eq!(sighting.firm_tile(tile), 1 << (4 * 8 + 1));
+    assert_eq!(sighting.tile(tile), (0, 1 << (4 * 8 + 1)));
+    for _ in 0..2 {
+        sighting.see_blocked(sighting.centre());
+    }
+    assert!(!sighting.is_firm(sighting.centre()));
+}

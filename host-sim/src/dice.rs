@@ -1,5 +1,6 @@
 //! Seeded chance that gives the same numbers on every platform.
 
+use planner_core::Cell;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -69,6 +70,67 @@ impl Dice {
     pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last as u32 + 1) as usize);
+        }
+    }
+}
+
+/// Chance as a function: whoever asks again for the same things gets the same answer, in
+/// any order. The mixing is that of SplitMix64 [Steele2014].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Lot(u64);
+
+impl Lot {
+    pub(crate) const fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The lot of this in particular.
+    pub(crate) const fn of(self, what: u64) -> Self {
+        let mixed = (self.0 ^ what).wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        Self(mixed ^ (mixed >> 31))
+    }
+
+    /// The lot of a cell.
+    pub(crate) const fn at(self, cell: Cell) -> Self {
+        self.of((cell.x as u16 as u64) << 16 | cell.y as u16 as u64)
+    }
+
+    /// True with this probability, 0 to 1.
+    pub(crate) fn happens(self, probability: f64) -> bool {
+        let below = (probability.clamp(0.0, 1.0) * 2f64.powi(32)) as u64;
+        (self.0 >> 32) < below
+    }
+
+    /// A number in `0..n`; `n` must not be 0.
+    pub(crate) const fn below(self, n: u32) -> u32 {
+        (((self.0 >> 32) * n as u64) >> 32) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lots_of_neighbouring_things_are_as_if_drawn() {
+        let cells = (0..100).flat_map(|y| (0..100).map(move |x| Cell::new(x, y)));
+        for seed in 0..5 {
+            for p in [0.0, 0.01, 0.5, 1.0] {
+                let lots = cells.clone().map(|cell| Lot::new(seed).of(7).at(cell));
+                let share = lots.filter(|lot| lot.happens(p)).count() as f64 / 1e4;
+                let deviation = (p * (1.0 - p) / 1e4).sqrt();
+                assert!((share - p).abs() <= 4.0 * deviation, "{p}: {share}");
+            }
+            let mut counts = [0; 8];
+            for of in 0..8000 {
+                counts[Lot::new(seed).of(of).below(8) as usize] += 1;
+            }
+            assert!(
+                counts.iter().all(|count| (880..1120).contains(count)),
+                "{counts:?}"
+            );
         }
     }
 }

@@ -7,7 +7,7 @@ use planner_core::{Action, AnyPlanner, Cell, Direction, Motion, RobotId, TileSet
 
 use crate::medium::{Medium, Message};
 use crate::robot::{Deed, Robot, Sent, Step, Violation};
-use crate::scenario::{Event, Faults};
+use crate::scenario::{Event, Faults, Trouble};
 use crate::senses::Senses;
 use crate::sensor::Sensor;
 
@@ -18,6 +18,10 @@ pub struct Rules {
     pub solid: bool,
     /// What goes wrong.
     pub faults: Faults,
+    /// How the world misleads robots.
+    pub trouble: Trouble,
+    /// Seed of that.
+    pub seed: u64,
 }
 
 /// Makes the planner of a robot that stands on a cell and knows nothing.
@@ -32,6 +36,7 @@ pub struct Fleet<const TW: usize, const TH: usize> {
     build: Build<TW, TH>,
     robots: Vec<Robot<TW, TH>>,
     violations: Vec<Violation>,
+    bumps: u32,
     all_tiles: TileSet<TH>,
     tick: u32,
 }
@@ -65,12 +70,13 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         };
         let robots = starts.iter().zip(0..).map(robot).collect();
         Self {
-            senses: Senses::new(sensor, &rules.faults, starts.len()),
+            senses: Senses::new(sensor, &rules.faults, rules.trouble, rules.seed, starts),
             medium,
             rules,
             build,
             robots,
             violations: Vec::new(),
+            bumps: 0,
             all_tiles,
             tick: 0,
         }
@@ -102,9 +108,21 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.tick
     }
 
-    /// Moves into obstacles so far. Anything but none is a bug of a planner.
+    /// What is seen, and what stands in the way, in the last tick.
+    pub fn senses(&self) -> &Senses {
+        &self.senses
+    }
+
+    /// Moves so far into obstacles that no look had hidden. Anything but none is a bug of a
+    /// planner.
     pub fn violations(&self) -> &[Violation] {
         &self.violations
+    }
+
+    /// Steps so far that ended at a person, a shut door, or an obstacle that a look may have
+    /// hidden.
+    pub fn bumps(&self) -> u32 {
+        self.bumps
     }
 
     /// Whether every living robot has stopped, and none is still to come or to go on.
@@ -120,12 +138,15 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     /// decides and moves.
     pub fn tick(&mut self) {
         self.meet_fate();
+        self.senses.begin(self.tick);
         for (index, robot) in self.robots.iter_mut().enumerate() {
             if !robot.alive {
                 continue;
             }
-            let sighting = self.senses.sighting(self.tick, index, robot.position);
-            robot.planner.observe(&sighting);
+            for look in 0..self.rules.trouble.looks {
+                let sighting = self.senses.sighting(index, look, robot.position);
+                robot.planner.observe(&sighting);
+            }
             robot.has_exchanged = false;
             robot.sent = Sent::default();
         }
@@ -138,9 +159,8 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
                     true => (Deed::Yielded, 0),
                     false => (self.act(index), self.robots[index].planner.work()),
                 };
-                if let Some(to) = deed.turns_to() {
-                    self.senses.turn(index, to);
-                }
+                let after = self.robots[index].position;
+                self.senses.follow(index, deed.turns_to(), after);
                 self.robots[index].step = Some(Step {
                     at,
                     deed,
@@ -224,7 +244,12 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     }
 
     fn can_be_entered(&mut self, index: usize, cell: Cell) -> bool {
-        if !self.senses.sensor().world().is_free(cell) {
+        let is_obstacle = !self.senses.sensor().world().is_free(cell);
+        if self.senses.is_taken(cell) || is_obstacle && self.rules.trouble.can_open_walls() {
+            self.bumps += 1;
+            return false;
+        }
+        if is_obstacle {
             self.violations.push(Violation {
                 tick: self.tick,
                 robot: self.robots[index].id,
@@ -249,10 +274,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             return Meeting::Refused(Motion::Blocked);
         }
         // Who does not know where it is takes over no way from there.
-        if [index, holder]
-            .iter()
-            .any(|&of| !self.senses.has_pose(self.tick, of))
-        {
+        if [index, holder].iter().any(|&of| !self.senses.has_pose(of)) {
             return Meeting::Refused(Motion::Held);
         }
         if other.has_exchanged {

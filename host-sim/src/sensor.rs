@@ -102,11 +102,19 @@ impl Sensor {
             ALL_AROUND.. => index,
             _ => 4 * index + heading as usize,
         };
-        self.views[index].get_or_init(|| Box::new(self.look(cell, heading)))
+        self.views[index].get_or_init(|| Box::new(self.look(cell, heading, |_| false)))
     }
 
-    fn look(&self, cell: Cell, heading: Direction) -> View {
-        let all = sight::look(cell, self.range, |cell| !self.world.is_free(cell));
+    /// As [`view`](Self::view), in a world where these cells are blocked too. Looks anew
+    /// each time.
+    pub(crate) fn view_past(&self, cell: Cell, heading: Direction, blocked: &[Cell]) -> View {
+        self.look(cell, heading, |cell| blocked.contains(&cell))
+    }
+
+    fn look(&self, cell: Cell, heading: Direction, is_taken: impl Fn(Cell) -> bool) -> View {
+        let all = sight::look(cell, self.range, |cell| {
+            !self.world.is_free(cell) || is_taken(cell)
+        });
         let sighting = match self.fov {
             ALL_AROUND.. => all,
             fov => only(&all, |seen| {

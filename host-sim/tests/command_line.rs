@@ -78,6 +78,49 @@ fn faults_by_option_happen() {
     );
 }
 
+#[test]
+fn a_world_misleads_by_option_and_is_told_so() {
+    let folder = folder();
+    let arguments = ["explore", "rooms.txt", "--robots=2"];
+    let trouble = [
+        "--false-walls=0.3",
+        "--people=1",
+        "--see-robots",
+        "--looks=2",
+    ];
+    let run = |options: &[&str]| {
+        let arguments = [&arguments, options].concat();
+        let output = host_sim(folder.path(), &arguments).output().unwrap();
+        assert!(output.status.code() < Some(2), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let told = run(&trouble);
+    assert!(told.contains("bumps"), "{told}");
+    assert!(!run(&[]).contains("bumps"));
+    let json = run(&[&trouble[..], &["--json"]].concat());
+    let summary: Value = serde_json::from_str(&json).unwrap();
+    let expected = serde_json::json!({
+        "false_walls": 0.3, "false_frees": 0.0, "error_kind": "transient", "misplaced": 0.0,
+        "drift": 0, "people": 1, "doors": 0, "see_robots": true, "looks": 2,
+    });
+    assert_eq!(summary["trouble"], expected);
+    for field in ["false_claims", "bumps", "violations"] {
+        assert!(summary[field].is_u64(), "{field}");
+    }
+    let robot = &summary["robots"][0];
+    assert!(robot["cells_closed"].is_u64() && robot["cells_opened"].is_u64());
+    let calm: Value = serde_json::from_str(&run(&["--json"])).unwrap();
+    assert!(calm.get("trouble").is_none());
+    assert_eq!(calm["false_claims"], 0);
+    let flown = ["survey", "--terrain=gaussian:0", "--size=16", "--doors=2"];
+    let empty = self::folder();
+    assert_bad_input(
+        empty.path(),
+        &flown,
+        &["--doors does not apply over a terrain"],
+    );
+}
+
 /// A corridor of eight cells, of which a robot sees two ahead.
 const CORRIDOR: [&str; 4] = ["explore", "corridor.txt", "--robots=1", "--range=2"];
 
@@ -288,6 +331,13 @@ fn bad_options_are_named() {
         &["--sensor-fails", "7@1"],
         &["--sensor-fails", "no robot 7"],
     );
+    let share = "0 (nothing) to 1";
+    bad(&["--false-walls", "1.5"], &["--false-walls", share]);
+    bad(&["--false-frees", "-1"], &["--false-frees", share]);
+    bad(&["--misplaced", "often"], &["--misplaced", share]);
+    bad(&["--error-kind", "wild"], &["--error-kind", "viewpoint"]);
+    bad(&["--looks", "0"], &["--looks", "1..=16"]);
+    bad(&["--people", "two"], &["--people"]);
     bad(&["--loss", "60"], &["--loss", "0 (nothing) to 1"]);
     bad(&["--corrupt", "2"], &["--corrupt", "0 (nothing) to 1"]);
     bad(&["--radio-range", "far"], &["--radio-range", "all, sight"]);

@@ -2,7 +2,7 @@
 
 use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
-use host_sim::scenario::{Conditions, Event, Faults};
+use host_sim::scenario::{CellSpan, Conditions, Event, Faults};
 use host_sim::world::Starts;
 use planner_core::{Cell, RobotId};
 
@@ -409,6 +409,7 @@ impl App {
                 });
             }
             Deed::Killed(robot) => self.kill(robot),
+            Deed::Shut(cell) => self.shut(cell),
         }
     }
 
@@ -472,6 +473,24 @@ impl App {
         self.set_at(setup, Some(tick));
     }
 
+    /// From the shown tick on, the cell is shut; if it is shut, open again.
+    fn shut(&mut self, cell: Cell) {
+        let tick = self.shown_tick();
+        let mut setup = self.setup.clone();
+        let spans = &mut setup.conditions.faults.shut;
+        let holds = |of: &CellSpan| of.cell == cell && (of.from..of.until).contains(&tick);
+        match spans.iter().position(holds) {
+            Some(index) if spans[index].from == tick => drop(spans.remove(index)),
+            Some(index) => spans[index].until = tick,
+            None => spans.push(CellSpan {
+                cell,
+                from: tick,
+                until: u32::MAX,
+            }),
+        }
+        self.set_at(setup, Some(tick));
+    }
+
     /// From the shown tick on, the robot, or every one, goes on after its stop.
     pub fn go_on(&mut self, robot: Option<usize>) {
         let tick = self.shown_tick();
@@ -530,7 +549,10 @@ impl App {
 
 #[cfg(test)]
 mod tests {
+    use planner_core::Direction;
+
     use super::*;
+    use crate::watch::Obstruction;
 
     fn app() -> App {
         let mut app = App::from_address("map=generate:rooms:24x24:2&robots=2");
@@ -598,7 +620,8 @@ mod tests {
     #[test]
     fn a_trace_with_faults_of_senses_is_replayed_and_run_again() {
         let address = "map=generate:rooms:24x24:2&robots=2&close=3,3@0-40&blind=0,5\
-                       &sensor-fails=1@30&pose-lost=0@8-12";
+                       &sensor-fails=1@30&pose-lost=0@8-12&people=3&doors=2&false-walls=0.01\
+                       &see-robots=";
         let mut app = App::from_address(address);
         for _ in 0..60 {
             app.tick();
@@ -606,17 +629,43 @@ mod tests {
         let bytes = crate::export::trace(&app.runs[0].watch.trace()).unwrap();
         let mut other = App::new(Setup::default());
         other.open("trace.csv", &bytes);
-        assert_eq!(other.setup.conditions.faults, app.setup.conditions.faults);
+        let conditions = |app: &App| app.setup.conditions.clone();
+        assert_eq!(conditions(&other).faults, conditions(&app).faults);
+        assert_eq!(conditions(&other).trouble, conditions(&app).trouble);
         other.show(50);
         app.show(50);
-        assert_eq!(
-            other.runs[0].watch.seen_cells(),
-            app.runs[0].watch.seen_cells()
-        );
+        let seen = |app: &App| {
+            let watch = &app.runs[0].watch;
+            (watch.seen_cells(), watch.obstructions().to_vec())
+        };
+        assert_eq!(seen(&other), seen(&app));
+        assert_eq!(seen(&app).1.len(), 5);
         let watch = &mut other.runs[0].watch;
         watch.catch_up(|| true);
         assert_eq!(watch.differs(), None);
         assert!(watch.state().is_some());
+    }
+
+    #[test]
+    fn a_cell_is_shut_and_opened_on_the_way() {
+        let mut app = app();
+        let cell = app.starts()[0].step(Direction::East);
+        let obstructions = |app: &mut App| {
+            app.advance(0.0);
+            app.tick();
+            app.runs[0].watch.obstructions().to_vec()
+        };
+        for _ in 0..15 {
+            app.tick();
+        }
+        assert_eq!(obstructions(&mut app), []);
+        app.apply(Deed::Shut(cell));
+        assert_eq!(obstructions(&mut app), [Obstruction::Shut(cell)]);
+        app.apply(Deed::Shut(cell));
+        assert_eq!(obstructions(&mut app), []);
+        let spans = &app.setup.conditions.faults.shut;
+        let told: Vec<String> = spans.iter().map(ToString::to_string).collect();
+        assert_eq!(told, [format!("{cell}@16-17")]);
     }
 
     #[test]

@@ -134,7 +134,7 @@ pub fn update(
     true
 }
 
-/// A cell in its colour, given what is known.
+/// A cell in its colour, given what is known; what a robot believes wrongly is reddish.
 fn pixel(
     watch: &Watch,
     subject: Subject,
@@ -148,7 +148,10 @@ fn pixel(
         let beside = |next: Cell| world.extent().contains(next) && known(next) == Known::Unknown;
         Direction::ALL.iter().any(|&way| beside(cell.step(way)))
     };
+    let mistaken = |believed| mix(believed, colors.lost, 0.5);
     match (known(cell), subject) {
+        (Known::Free, Subject::Robot(_)) if !world.is_free(cell) => mistaken(colors.free),
+        (Known::Obstacle, Subject::Robot(_)) if world.is_free(cell) => mistaken(colors.obstacle),
         (Known::Free, Subject::World) => colors.free,
         (Known::Free, _) if layers.frontiers && is_frontier() => colors.frontier,
         (Known::Free, _) if layers.visited && watch.is_visited(cell) => colors.visited,

@@ -1,6 +1,7 @@
 //! A view of the map: the ground as a texture, robots and marks above it, and what the
 //! pointer does to it.
 
+use egui::epaint::{RectShape, StrokeKind};
 use egui::{
     Align2, Color32, ColorImage, FontId, Pos2, Rect, Response, Sense, Shape, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, pos2, vec2,
@@ -12,7 +13,7 @@ use planner_core::{Cell, Extent, RobotId};
 
 use crate::colors::{Colors, mix};
 use crate::ground::{self, Layers, Subject};
-use crate::watch::Watch;
+use crate::watch::{Obstruction, Watch};
 
 /// More messages than this are drawn only for a selected robot.
 pub const MOST_MESSAGES: usize = 1000;
@@ -32,16 +33,19 @@ pub enum Tool {
     Place,
     /// Kills the robot that is clicked.
     Kill,
+    /// Shuts the cell that is clicked, or opens it again.
+    Shut,
 }
 
 impl Tool {
     /// All of them, with their names and keys.
-    pub const ALL: [(Self, &'static str); 5] = [
+    pub const ALL: [(Self, &'static str); 6] = [
         (Self::Look, "look"),
         (Self::Wall, "draw walls"),
         (Self::Erase, "erase walls"),
         (Self::Place, "place robots"),
         (Self::Kill, "kill robots"),
+        (Self::Shut, "shut cells"),
     ];
 }
 
@@ -58,6 +62,8 @@ pub enum Deed {
     Dragged(usize, Cell),
     /// Clicked this robot to kill it.
     Killed(usize),
+    /// Clicked this cell to shut it, or to open it.
+    Shut(Cell),
 }
 
 /// Which part of the map is looked at; the same in all views of one world.
@@ -144,6 +150,7 @@ impl View {
         }
         painter.extend(marks(frame, &place, &colors));
         painter.extend(sectors(frame, &place, &colors));
+        painter.extend(obstructions(frame, &place, &colors));
         paint_robots(&painter, frame, &place, &colors);
         response.widget_info(|| {
             let about = format!("map, {} robots", frame.watch.scenario().starts.len());
@@ -216,6 +223,7 @@ impl View {
                 .then_some(cell?)
                 .map(Deed::Painted),
             Tool::Kill => response.clicked().then_some(robot?).map(Deed::Killed),
+            Tool::Shut => response.clicked().then_some(cell?).map(Deed::Shut),
             Tool::Place => {
                 if response.drag_started() {
                     self.dragged = robot;
@@ -537,6 +545,40 @@ fn sectors(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
         (seen.alive && seen.is_there).then(|| Shape::closed_line(edge, stroke))
     };
     (0..scenario.starts.len()).filter_map(sector).collect()
+}
+
+/// People as diamonds, doors as squares: filled where they are shut.
+fn obstructions(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape> {
+    let shape = |obstruction: &Obstruction| {
+        let (cell, is_filled) = match *obstruction {
+            Obstruction::Person(cell) | Obstruction::Shut(cell) => (cell, true),
+            Obstruction::Open(cell) => (cell, false),
+        };
+        let (middle, half) = (place.middle(cell), (place.scale * 0.5).max(2.5));
+        let fill = if is_filled {
+            colors.lost
+        } else {
+            Color32::TRANSPARENT
+        };
+        let edge = Stroke::new(1.5, colors.lost);
+        match obstruction {
+            Obstruction::Person(_) => {
+                let arms = [
+                    vec2(half, 0.0),
+                    vec2(0.0, half),
+                    vec2(-half, 0.0),
+                    vec2(0.0, -half),
+                ];
+                let corners = arms.map(|arm| middle + arm).to_vec();
+                Shape::convex_polygon(corners, fill, edge)
+            }
+            Obstruction::Shut(_) | Obstruction::Open(_) => {
+                let square = Rect::from_center_size(middle, Vec2::splat(2.0 * half - 1.5));
+                Shape::Rect(RectShape::new(square, 0.0, fill, edge, StrokeKind::Inside))
+            }
+        }
+    };
+    frame.watch.obstructions().iter().map(shape).collect()
 }
 
 fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, colors: &Colors) {

@@ -60,6 +60,8 @@ struct History {
     /// When a robot first stood on each cell, row by row.
     visited_since: Vec<u32>,
     series: Vec<Point>,
+    /// What stood in the way in each tick; shorter, if nothing ever does.
+    obstructions: Vec<Vec<Obstruction>>,
     seen_cells: u32,
     bytes: u64,
 }
@@ -73,6 +75,29 @@ pub struct Point {
     pub work: u32,
     /// Bytes that all robots have sent since the start.
     pub bytes: u64,
+}
+
+/// What stands in the way for a while.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Obstruction {
+    /// Somebody who walks about.
+    Person(Cell),
+    /// A door that is shut.
+    Shut(Cell),
+    /// A door that is open.
+    Open(Cell),
+}
+
+impl Obstruction {
+    /// All of them, as they are for these senses.
+    fn all(senses: &Senses) -> Vec<Self> {
+        let people = senses.people().map(Self::Person);
+        let door = |(at, is_shut)| match is_shut {
+            true => Self::Shut(at),
+            false => Self::Open(at),
+        };
+        people.chain(senses.doors().map(door)).collect()
+    }
 }
 
 /// How a run stands.
@@ -299,6 +324,15 @@ impl Watch {
         positions
     }
 
+    /// What stood in the way when the robots last looked.
+    pub fn obstructions(&self) -> &[Obstruction] {
+        let last = self.shown.saturating_sub(1) as usize;
+        self.history
+            .obstructions
+            .get(last)
+            .map_or(&[], Vec::as_slice)
+    }
+
     /// Whether somebody had seen the cell by the shown tick.
     pub fn is_seen(&self, cell: Cell) -> bool {
         self.history.seen_since[self.index(cell)] < self.shown
@@ -390,6 +424,11 @@ impl History {
         for records in records.chunk_by(|a, b| a.tick == b.tick) {
             let tick = records[0].tick;
             self.fill(tick);
+            senses.begin(tick);
+            let obstructions = Obstruction::all(senses);
+            if !(self.obstructions.is_empty() && obstructions.is_empty()) {
+                self.obstructions.resize(tick as usize + 1, obstructions);
+            }
             let mut work = 0;
             for record in records {
                 work = work.max(record.work);
@@ -399,7 +438,7 @@ impl History {
                     self.visited_since[stood] = tick;
                 }
                 let robot = usize::from(record.robot);
-                let view = senses.view(tick, robot, record.at);
+                let view = senses.view(robot, record.at);
                 let seen = view.iter().flat_map(|view| {
                     let sighting = &view.sighting;
                     sighting.free_cells().chain(sighting.blocked_cells())
@@ -411,9 +450,7 @@ impl History {
                         self.seen_cells += u32::from(reachable.contains(cell));
                     }
                 }
-                if let Some(to) = record.deed.turns_to() {
-                    senses.turn(robot, to);
-                }
+                senses.follow(robot, record.deed.turns_to(), record.after());
             }
             let begin = self.first.last().copied().unwrap_or(0);
             self.first.push(begin + records.len());

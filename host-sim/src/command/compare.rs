@@ -12,7 +12,7 @@ use host_sim::experiments::{
     markdown, to_csv,
 };
 use host_sim::planners::PlannerKind;
-use host_sim::scenario::{MediumKind, parse_share};
+use host_sim::scenario::{MediumKind, Trouble, TroubleArgs, parse_share};
 use host_sim::world::{Family, ReadOptions, Recipe, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Extent;
@@ -92,6 +92,8 @@ pub(crate) struct Compare {
     /// No progress bar.
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    trouble: TroubleArgs,
 }
 
 /// One value of `--families`.
@@ -194,6 +196,7 @@ impl Compare {
             syncs: self.sync.clone(),
             losses: self.loss.clone(),
             ranges: self.range.clone(),
+            trouble: self.trouble.clone().over(Trouble::default()),
             seed: self.seed,
         })
     }

@@ -50,6 +50,12 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             robot.cells_known,
         );
     }
+    if !summary.head.conditions.trouble.is_none() {
+        println!(
+            "  bumps              {} steps into what was not seen",
+            summary.bumps
+        );
+    }
     for (number, robot) in summary.robots.iter().enumerate() {
         for doubt in doubts(robot) {
             println!("  robot {number:<3} {doubt}");
@@ -88,7 +94,7 @@ fn print_measured(measured: &Measured) {
     );
 }
 
-/// What speaks against what a robot heard.
+/// What speaks against what a robot believes, heard or claims.
 fn doubts(robot: &RobotSummary) -> Vec<String> {
     let Hearsay {
         contradictions,
@@ -98,6 +104,18 @@ fn doubts(robot: &RobotSummary) -> Vec<String> {
         ..
     } = robot.hearsay;
     let mut doubts = Vec::new();
+    if robot.claims_falsely {
+        doubts.push(format!(
+            "claims falsely: {} cells that it could reach are not on its map",
+            robot.cells_missed
+        ));
+    }
+    if robot.cells_closed + robot.cells_opened > 0 {
+        doubts.push(format!(
+            "its map is wrong: {} free cells that it could reach are obstacles, {} obstacles are free",
+            robot.cells_closed, robot.cells_opened
+        ));
+    }
     if same_id > 0 {
         doubts.push(format!(
             "heard {same_id} frames of another robot with its id: each needs its own"

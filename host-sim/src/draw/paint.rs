@@ -18,10 +18,24 @@ pub(super) enum Ground {
     Unseen,
     /// Neither seen nor reachable.
     Unknown,
+    /// Shown otherwise than it is by the last look at it.
+    Mistaken,
+    Person,
+    ShutDoor,
+    OpenDoor,
 }
 
 impl Ground {
-    pub(super) const ALL: [Self; 4] = [Self::Free, Self::Obstacle, Self::Unseen, Self::Unknown];
+    pub(super) const ALL: [Self; 8] = [
+        Self::Free,
+        Self::Obstacle,
+        Self::Unseen,
+        Self::Unknown,
+        Self::Mistaken,
+        Self::Person,
+        Self::ShutDoor,
+        Self::OpenDoor,
+    ];
 
     pub(super) fn color(self) -> RGBColor {
         match self {
@@ -29,6 +43,10 @@ impl Ground {
             Self::Obstacle => RGBColor(64, 70, 80),
             Self::Unseen => RGBColor(250, 200, 205),
             Self::Unknown => RGBColor(205, 208, 214),
+            Self::Mistaken => RGBColor(255, 214, 102),
+            Self::Person => RGBColor(200, 30, 90),
+            Self::ShutDoor => RGBColor(122, 72, 30),
+            Self::OpenDoor => RGBColor(222, 190, 150),
         }
     }
 
@@ -39,6 +57,10 @@ impl Ground {
             Self::Obstacle => "seen obstacle",
             Self::Unseen => "reachable, not seen",
             Self::Unknown => "not known",
+            Self::Mistaken => "last shown wrongly",
+            Self::Person => "person",
+            Self::ShutDoor => "shut door",
+            Self::OpenDoor => "open door",
         }
     }
 }

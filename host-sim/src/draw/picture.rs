@@ -220,8 +220,12 @@ pub(super) fn title(trace: &Trace) -> String {
             format!("maps shared every {sync} ticks, {loss:.0} % lost")
         }
     };
+    let trouble = match scenario.conditions.trouble {
+        trouble if trouble.is_none() => String::new(),
+        trouble => format!(", {trouble}"),
+    };
     format!(
-        "{} ({} cells), {} × {}, range {} cells, {radio}",
+        "{} ({} cells), {} × {}, range {} cells, {radio}{trouble}",
         scenario.world.name(),
         scenario.world.extent(),
         scenario.starts.len(),

@@ -4,6 +4,7 @@ use planner_core::{Cell, Extent};
 
 use super::paint::Ground;
 use crate::record::grid::{Record, Trace};
+use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::world::Reachable;
 
@@ -15,6 +16,8 @@ pub struct Replay<'a> {
     /// Cells that somebody has seen, row by row.
     seen: Vec<bool>,
     seen_cells: u32,
+    /// Cells that the last look at them showed otherwise than the world is.
+    mistaken: Vec<bool>,
     positions: Vec<Cell>,
     /// The next record.
     next: usize,
@@ -33,6 +36,7 @@ impl<'a> Replay<'a> {
             reachable: world.reachable(&scenario.starts),
             seen: vec![false; world.extent().cells() as usize],
             seen_cells: 0,
+            mistaken: vec![false; world.extent().cells() as usize],
             positions: scenario.starts.clone(),
             next: 0,
             now: 0,
@@ -46,6 +50,7 @@ impl<'a> Replay<'a> {
             return false;
         }
         let now = self.now;
+        self.senses.begin(now);
         for record in rest.iter().take_while(|record| record.tick <= now) {
             self.play(record);
             self.next += 1;
@@ -57,7 +62,7 @@ impl<'a> Replay<'a> {
     fn play(&mut self, record: &Record) {
         let robot = usize::from(record.robot);
         let extent = self.trace.scenario.world.extent();
-        if let Some(view) = self.senses.view(record.tick, robot, record.at) {
+        if let Some(view) = self.senses.view(robot, record.at) {
             let sighting = &view.sighting;
             for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
                 if extent.contains(cell) {
@@ -67,11 +72,29 @@ impl<'a> Replay<'a> {
                 }
             }
         }
-        if let Some(to) = record.deed.turns_to() {
-            self.senses.turn(robot, to);
-        }
+        self.note_mistakes(robot, record.at);
+        self.senses
+            .follow(robot, record.deed.turns_to(), record.after());
         if let Some(position) = self.positions.get_mut(robot) {
             *position = record.after();
+        }
+    }
+
+    fn note_mistakes(&mut self, robot: usize, at: Cell) {
+        let Scenario {
+            world, conditions, ..
+        } = &self.trace.scenario;
+        if conditions.trouble.is_none() {
+            return;
+        }
+        for look in 0..conditions.trouble.looks {
+            let told = self.senses.sighting(robot, look, at);
+            let free = told.free_cells().map(|cell| (cell, true));
+            for (cell, is_free) in free.chain(told.blocked_cells().map(|cell| (cell, false))) {
+                if world.extent().contains(cell) {
+                    self.mistaken[index(world.extent(), cell)] = is_free != world.is_free(cell);
+                }
+            }
         }
     }
 
@@ -101,8 +124,20 @@ impl<'a> Replay<'a> {
 
     pub(super) fn ground(&self, cell: Cell) -> Ground {
         let world = &self.trace.scenario.world;
-        let seen = self.seen[index(world.extent(), cell)];
-        match (seen, world.is_free(cell)) {
+        let index = index(world.extent(), cell);
+        if self.senses.people().any(|at| at == cell) {
+            return Ground::Person;
+        }
+        if let Some((_, is_shut)) = self.senses.doors().find(|(at, _)| *at == cell) {
+            return match is_shut {
+                true => Ground::ShutDoor,
+                false => Ground::OpenDoor,
+            };
+        }
+        if self.mistaken[index] {
+            return Ground::Mistaken;
+        }
+        match (self.seen[index], world.is_free(cell)) {
             (true, true) => Ground::Free,
             (true, false) => Ground::Obstacle,
             (false, _) if self.reachable.contains(cell) => Ground::Unseen,

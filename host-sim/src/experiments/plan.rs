@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use super::row::Key;
 use crate::planners::PlannerKind;
-use crate::scenario::MediumKind;
 use crate::scenario::grid::Scenario;
+use crate::scenario::{MediumKind, Trouble};
 use crate::world::{Recipe, Starts, World, WorldError};
 
 /// Every combination of these is one run.
@@ -34,7 +34,9 @@ pub struct Plan {
     pub losses: Vec<f64>,
     /// Sensor ranges in cells.
     pub ranges: Vec<u8>,
-    /// Seed of placings and losses.
+    /// How the worlds mislead robots.
+    pub trouble: Trouble,
+    /// Seed of placings, losses and trouble.
     pub seed: u64,
 }
 
@@ -85,6 +87,8 @@ pub struct Setup {
     pub loss: f64,
     /// Sensor range in cells.
     pub range: u8,
+    /// How the world misleads robots.
+    pub trouble: Trouble,
     /// The plan's seed.
     pub seed: u64,
 }
@@ -115,6 +119,7 @@ impl Plan {
                                 sync,
                                 loss,
                                 range,
+                                trouble: self.trouble,
                                 seed: self.seed,
                             }));
                         }
@@ -187,6 +192,7 @@ impl Setup {
         scenario.conditions.medium = self.medium;
         scenario.conditions.sync = self.sync;
         scenario.conditions.loss = self.loss;
+        scenario.conditions.trouble = self.trouble;
         scenario.conditions.seed = self.seed + u64::from(self.start);
         Ok(scenario)
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::{Place, Setup, Site};
 use crate::planners::PlannerKind;
-use crate::run::Outcome;
+use crate::run::{Outcome, RobotOutcome};
 use crate::scenario::MediumKind;
 
 /// A run and its metrics, in the column names of the tables.
@@ -39,10 +39,21 @@ pub struct Row {
     pub loss: f64,
     /// Sensor range in cells.
     pub range: u8,
+    /// How the world misled robots: the options that differ from none.
+    pub trouble: String,
     /// Seed of the plan.
     pub seed: u64,
     /// Whether every reachable cell was seen by somebody.
     pub complete: bool,
+    /// Robots that said in the end that all that they can reach is known, while something
+    /// was not.
+    pub false_claims: u32,
+    /// Share of the reachable cells that are obstacles on a robot's map, on average, 0 to 1.
+    pub closed_share: f64,
+    /// Obstacles that are free on a robot's map, on average.
+    pub opened_cells: f64,
+    /// Steps that ended at a person, a shut door, or an obstacle that a look may have hidden.
+    pub bumps: u32,
     /// Ticks until 90 % of the reachable cells were seen.
     pub ticks_to_90: Option<u32>,
     /// Ticks until 99 % were seen.
@@ -94,6 +105,7 @@ pub struct Key {
     sync: u32,
     loss: u64,
     range: u8,
+    trouble: String,
     seed: u64,
 }
 
@@ -112,6 +124,7 @@ impl Key {
             sync: setup.sync,
             loss: setup.loss.to_bits(),
             range: setup.range,
+            trouble: setup.trouble.to_string(),
             seed: setup.seed,
         }
     }
@@ -174,6 +187,14 @@ impl Row {
         let steps_mean = steps.iter().sum::<f64>() / robots;
         let squares = steps.iter().map(|step| (step - steps_mean).powi(2));
         let work: u64 = outcome.robots.iter().map(|robot| robot.work).sum();
+        let mean = |of: fn(&RobotOutcome) -> u32| {
+            outcome
+                .robots
+                .iter()
+                .map(|robot| f64::from(of(robot)))
+                .sum::<f64>()
+                / robots
+        };
         let stopped = outcome.robots.iter().filter(|robot| robot.stop.is_some());
         Self {
             family: site.family(),
@@ -188,8 +209,14 @@ impl Row {
             sync: setup.sync,
             loss: setup.loss,
             range: setup.range,
+            trouble: setup.trouble.to_string(),
             seed: setup.seed,
             complete: outcome.is_complete(),
+            false_claims: outcome.false_claims() as u32,
+            closed_share: mean(|robot| robot.cells_closed)
+                / f64::from(outcome.reachable_cells.max(1)),
+            opened_cells: mean(|robot| robot.cells_opened),
+            bumps: outcome.bumps,
             ticks_to_90: outcome.ticks_to_share(0.90),
             ticks_to_99: outcome.ticks_to_share(0.99),
             ticks_to_seen: outcome.ticks_to_seen,
@@ -232,6 +259,7 @@ impl Row {
             sync: self.sync,
             loss: self.loss.to_bits(),
             range: self.range,
+            trouble: self.trouble.clone(),
             seed: self.seed,
         }
     }

@@ -95,6 +95,8 @@ pub struct Comparison {
     pub runs: usize,
     /// Those of them in which something reachable was left unseen.
     pub incomplete: usize,
+    /// Those of them in which a robot claimed falsely.
+    pub false_claims: usize,
     /// The planner's own ticks, over its complete runs.
     pub ticks: Option<Interval>,
     /// Pairs in which both were complete.
@@ -104,7 +106,7 @@ pub struct Comparison {
 }
 
 /// Runs under different conditions are never thrown together.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Debug, PartialEq, PartialOrd)]
 pub struct Conditions {
     /// Sensor range in cells.
     pub range: u8,
@@ -112,6 +114,8 @@ pub struct Conditions {
     pub sync: u32,
     /// Share of messages lost.
     pub loss: f64,
+    /// How the world misled robots; empty: not.
+    pub trouble: String,
 }
 
 impl Conditions {
@@ -120,6 +124,7 @@ impl Conditions {
             range: row.range,
             sync: row.sync,
             loss: row.loss,
+            trouble: row.trouble.clone(),
         }
     }
 }
@@ -159,11 +164,12 @@ pub fn compare(rows: &[Row], reference: PlannerKind, metric: Metric) -> Vec<Comp
                         .collect();
                     comparisons.push(Comparison {
                         planner,
-                        conditions,
+                        conditions: conditions.clone(),
                         family: family.clone(),
                         robots,
                         runs: group.clone().count(),
                         incomplete: group.clone().filter(|row| !row.complete).count(),
+                        false_claims: group.clone().filter(|row| row.false_claims > 0).count(),
                         ticks: geometric_mean(own),
                         pairs: ratios.len(),
                         ratio: geometric_mean(ratios),

@@ -33,12 +33,18 @@ impl Csv {
 /// as columns, numbers of robots as rows; then the runs that were not complete.
 pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metric) -> String {
     let mut text = String::new();
-    for conditions in in_order(comparisons, |comparison| comparison.conditions) {
+    for conditions in in_order(comparisons, |comparison| comparison.conditions.clone()) {
         let title = metric.title();
         let _ = writeln!(
             text,
-            "## Range {}, sync {}, loss {}: {title}\n",
-            conditions.range, conditions.sync, conditions.loss
+            "## Range {}, sync {}, loss {}{}: {title}\n",
+            conditions.range,
+            conditions.sync,
+            conditions.loss,
+            match conditions.trouble.as_str() {
+                "" => String::new(),
+                trouble => format!(", {trouble}"),
+            },
         );
         for planner in in_order(comparisons, |comparison| comparison.planner) {
             let rows: Vec<&Comparison> = comparisons
@@ -54,15 +60,16 @@ pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metr
             }
             if rows.iter().any(|row| row.incomplete > 0) {
                 let _ = writeln!(text, "Runs of {planner} that left something unseen:\n");
-                table(&mut text, &rows, |row| match row.runs {
-                    0 => "–".into(),
-                    runs => format!("{:.1} %", 100.0 * row.incomplete as f64 / runs as f64),
-                });
+                table(&mut text, &rows, |row| share(row.incomplete, row.runs));
             } else if let Some(all) = rows.iter().map(|row| row.runs).max() {
                 let _ = writeln!(
                     text,
                     "0 of {all} runs of {planner} left something unseen.\n"
                 );
+            }
+            if rows.iter().any(|row| row.false_claims > 0) {
+                let _ = writeln!(text, "Runs of {planner} with a false claim:\n");
+                table(&mut text, &rows, |row| share(row.false_claims, row.runs));
             }
         }
     }
@@ -116,6 +123,13 @@ fn table(text: &mut String, rows: &[&Comparison], cell: impl Fn(&Comparison) -> 
     text.push('\n');
 }
 
+fn share(some: usize, all: usize) -> String {
+    match all {
+        0 => "–".into(),
+        all => format!("{:.1} %", 100.0 * some as f64 / all as f64),
+    }
+}
+
 fn cell(interval: Option<Interval>, digits: usize) -> String {
     match interval {
         None => "–".into(),
@@ -129,24 +143,31 @@ fn cell(interval: Option<Interval>, digits: usize) -> String {
 /// One line for each comparison, numbers in full.
 pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
     let mut csv = Csv::new(
-        "metric,range,sync,loss,planner,family,robots,runs,incomplete,\
+        "metric,range,sync,loss,trouble,planner,family,robots,runs,incomplete,false_claims,\
          ticks,ticks_low,ticks_high,pairs,ratio,ratio_low,ratio_high",
     );
     for row in comparisons {
-        let Conditions { range, sync, loss } = row.conditions;
+        let Conditions {
+            range,
+            sync,
+            loss,
+            trouble,
+        } = &row.conditions;
         let robots = row.robots.map_or("all".into(), |robots| robots.to_string());
         let ([ticks, ticks_low, ticks_high], [ratio, low, high]) =
             (fields(row.ticks), fields(row.ratio));
         csv.add([
             &metric.name(),
-            &range,
-            &sync,
-            &loss,
+            range,
+            sync,
+            loss,
+            trouble,
             &row.planner,
             &row.family.as_deref().unwrap_or("all"),
             &robots,
             &row.runs,
             &row.incomplete,
+            &row.false_claims,
             &ticks,
             &ticks_low,
             &ticks_high,

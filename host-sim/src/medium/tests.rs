@@ -78,11 +78,11 @@ proptest! {
         let starts = world.place(robots, &Starts::Random(seed), false).unwrap();
         let planner = if explorer { PlannerKind::Explorer } else { PlannerKind::Closest };
         let rules = Rules {
-            solid: false,
             faults: Faults {
                 deaths: vec![Event { robot: RobotId(0), tick: death }],
                 ..Faults::default()
             },
+            ..Rules::default()
         };
         let fleet = |medium| {
             let extent = world.extent();

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use planner_core::radio::Hearsay;
-use planner_core::{Cell, Direction, Map};
+use planner_core::{Cell, Direction, Extent, Map};
 
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
@@ -45,6 +45,8 @@ impl Book {
                     blocked_steps: 0,
                     cells_known: 0,
                     cells_missed: 0,
+                    cells_closed: 0,
+                    cells_opened: 0,
                     cells_unheard: 0,
                     work: 0,
                     sent: Sent::default(),
@@ -54,6 +56,7 @@ impl Book {
                 };
                 robots
             ],
+            bumps: 0,
             violations: Vec::new(),
         };
         Self {
@@ -69,18 +72,18 @@ impl Book {
     /// Takes down the last tick.
     pub(super) fn note<const TW: usize, const TH: usize>(&mut self, fleet: &Fleet<TW, TH>) {
         let tick = fleet.ticks() - 1;
+        self.senses.begin(tick);
         for (index, robot) in fleet.robots().iter().enumerate() {
             let Some(step) = robot.step else { continue };
             let from = (step.at, self.senses.heading(index));
             if self.looked_from[index] != Some(from) || !self.senses.is_steady() {
                 self.looked_from[index] = Some(from);
-                if let Some(view) = self.senses.view(tick, index, step.at) {
+                if let Some(view) = self.senses.view(index, step.at) {
                     self.coverage.look(index, &view);
                 }
             }
-            if let Some(to) = step.deed.turns_to() {
-                self.senses.turn(index, to);
-            }
+            self.senses
+                .follow(index, step.deed.turns_to(), robot.position);
             let noted = &mut self.outcome.robots[index];
             noted.work += u64::from(step.work);
             noted.sent.frames += step.sent.frames;
@@ -136,6 +139,7 @@ impl Book {
     ) -> Outcome {
         let mut outcome = self.outcome.clone();
         outcome.shared_cells = self.coverage.shared_cells();
+        outcome.bumps = fleet.bumps();
         outcome.violations = fleet.violations().to_vec();
         let unheard = unheard(fleet);
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
@@ -144,7 +148,9 @@ impl Book {
             noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
-            noted.cells_missed = missed(&scenario.world, &self.reachable, robot, start);
+            (noted.cells_missed, noted.cells_closed) =
+                missed(&scenario.world, &self.reachable, robot, start);
+            noted.cells_opened = opened(&scenario.world, robot.planner.map());
         }
         outcome
     }
@@ -160,19 +166,30 @@ impl Book {
     }
 }
 
-/// Cells that `robot` could reach and does not know.
+/// Cells that `robot` could reach and does not know, and those that it believes blocked.
 fn missed<const TW: usize, const TH: usize>(
     world: &World,
     all: &Reachable,
     robot: &Robot<TW, TH>,
     start: Cell,
-) -> u32 {
-    let lacks = |cell: &Cell| !robot.planner.map().is_known(*cell);
-    if all.cells().any(|cell| lacks(&cell)) {
-        world.reachable(&[start]).cells().filter(lacks).count() as u32
-    } else {
-        0
+) -> (u32, u32) {
+    let map = robot.planner.map();
+    if all.cells().all(|cell| map.is_free(cell)) {
+        return (0, 0);
     }
+    let own = world.reachable(&[start]);
+    let count = |is_so: &dyn Fn(Cell) -> bool| own.cells().filter(|&cell| is_so(cell)).count();
+    let missed = count(&|cell| !map.is_known(cell));
+    let closed = count(&|cell| map.is_obstacle(cell));
+    (missed as u32, closed as u32)
+}
+
+/// Obstacles that are free on a map.
+fn opened<const TW: usize, const TH: usize>(world: &World, map: &Map<TW, TH>) -> u32 {
+    let Extent { width, height } = world.extent();
+    let cells = (0..height as i16).flat_map(|y| (0..width as i16).map(move |x| Cell::new(x, y)));
+    let is_opened = |&cell: &Cell| !world.is_free(cell) && map.is_free(cell);
+    cells.filter(is_opened).count() as u32
 }
 
 /// Robot by robot, the cells that it lacks and another one alive knows.

@@ -130,6 +130,8 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
     let rules = Rules {
         solid: scenario.solid,
         faults: scenario.conditions.faults.clone(),
+        trouble: scenario.conditions.trouble,
+        seed: scenario.conditions.seed,
     };
     let link = scenario.conditions.link();
     let (host, kind) = (host.clone(), scenario.planner);

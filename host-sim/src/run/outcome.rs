@@ -30,7 +30,9 @@ pub struct Outcome {
     pub assignments: Assignments,
     /// Robot by robot.
     pub robots: Vec<RobotOutcome>,
-    /// Moves into obstacles. Anything but none is a bug of a planner.
+    /// Steps that ended at a person, a shut door, or an obstacle that a look may have hidden.
+    pub bumps: u32,
+    /// Moves into obstacles that no look had hidden. Anything but none is a bug of a planner.
     pub violations: Vec<Violation>,
 }
 
@@ -45,6 +47,10 @@ pub struct RobotOutcome {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that it could reach and that are obstacles on its own map.
+    pub cells_closed: u32,
+    /// Obstacles that are free on its own map.
+    pub cells_opened: u32,
     /// Cells that another living robot's map holds and its own lacks, if it lives.
     pub cells_unheard: u32,
     /// Work of its planner over the run.
@@ -57,6 +63,15 @@ pub struct RobotOutcome {
     pub alive: bool,
     /// What it had from others, and what spoke against them.
     pub hearsay: Hearsay,
+}
+
+impl RobotOutcome {
+    /// Whether it lives and says in the end that everything that it can reach is known,
+    /// while a cell that it could reach, with every door open and nobody about, is not.
+    pub fn claims_falsely(&self) -> bool {
+        let says_complete = self.stop.is_some_and(|stop| stop.is_complete());
+        self.alive && says_complete && self.cells_missed > 0
+    }
 }
 
 /// The costs of assignments by both criteria of \[Bautin2011\]. The robots that get
@@ -109,6 +124,12 @@ impl Outcome {
     /// Whether all living robots know the same cells in the end.
     pub fn maps_agree(&self) -> bool {
         self.robots.iter().all(|robot| robot.cells_unheard == 0)
+    }
+
+    /// Robots that claim falsely, see [`RobotOutcome::claims_falsely`].
+    pub fn false_claims(&self) -> usize {
+        let robots = self.robots.iter();
+        robots.filter(|robot| robot.claims_falsely()).count()
     }
 
     /// Share of the seen cells that more than one robot saw with its own

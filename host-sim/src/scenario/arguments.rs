@@ -6,7 +6,7 @@ use planner_core::radio::{Key, LinkConfig};
 
 use super::{
     AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, Partition, Reach,
-    RobotSpan, ScenarioError, key,
+    RobotSpan, ScenarioError, TroubleArgs, key,
 };
 
 /// The options of a robot's radio.
@@ -98,6 +98,10 @@ pub struct ConditionsArgs {
     /// FROM until before UNTIL, and no sensor shows that. May be given again.
     #[arg(long, value_name = "X,Y[@FROM-UNTIL]")]
     close: Vec<CellSpan>,
+    /// X,Y or X,Y@FROM-UNTIL: this cell is blocked, and sensors show it: a door is shut, or
+    /// somebody stands there. May be given again.
+    #[arg(long, value_name = "X,Y[@FROM-UNTIL]")]
+    shut: Vec<CellSpan>,
     /// X,Y or X,Y@FROM-UNTIL: no sensor says anything of this cell, as of glass. May be
     /// given again.
     #[arg(long, value_name = "X,Y[@FROM-UNTIL]")]
@@ -110,6 +114,8 @@ pub struct ConditionsArgs {
     /// again.
     #[arg(long, value_name = "ROBOT@FROM-UNTIL")]
     pose_lost: Vec<RobotSpan>,
+    #[command(flatten)]
+    trouble: TroubleArgs,
 }
 
 impl ConditionsArgs {
@@ -138,6 +144,7 @@ impl ConditionsArgs {
             seed,
             max_ticks,
             faults,
+            trouble,
         } = conditions;
         let AirFaults {
             reach,
@@ -153,6 +160,7 @@ impl ConditionsArgs {
             restarts,
             resumes,
             closures,
+            shut,
             blind,
             sensor_failures,
             lost_poses,
@@ -175,9 +183,11 @@ impl ConditionsArgs {
         restarts.extend(self.restart);
         resumes.extend(self.resume);
         closures.extend(self.close);
+        shut.extend(self.shut);
         blind.extend(self.blind);
         sensor_failures.extend(self.sensor_fails);
         lost_poses.extend(self.pose_lost);
+        *trouble = self.trouble.over(*trouble);
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
             _ => Ok(()),
@@ -197,7 +207,11 @@ impl Conditions {
     pub fn set(&mut self, name: &str, value: &str) -> Option<()> {
         let options = ConditionsArgs::augment_args(Command::new("conditions"));
         let options = options.no_binary_name(true).disable_help_flag(true);
-        let given = options.try_get_matches_from([format!("--{name}={value}")]);
+        let option = match value {
+            "" => format!("--{name}"),
+            _ => format!("--{name}={value}"),
+        };
+        let given = options.try_get_matches_from([option]);
         let given = ConditionsArgs::from_arg_matches(&given.ok()?).ok()?;
         (!given.has_key()).then_some(())?;
         given.set(self).ok()
@@ -216,6 +230,7 @@ impl Conditions {
             seed,
             max_ticks,
             faults,
+            trouble,
         } = self;
         let AirFaults {
             reach,
@@ -231,6 +246,7 @@ impl Conditions {
             restarts,
             resumes,
             closures,
+            shut,
             blind,
             sensor_failures,
             lost_poses,
@@ -267,9 +283,11 @@ impl Conditions {
         settings.extend(all("restart", restarts));
         settings.extend(all("resume", resumes));
         settings.extend(all("close", closures));
+        settings.extend(all("shut", shut));
         settings.extend(all("blind", blind));
         settings.extend(all("sensor-fails", sensor_failures));
         settings.extend(all("pose-lost", lost_poses));
+        settings.extend(trouble.settings(&usual.trouble));
         settings
     }
 }

@@ -28,6 +28,10 @@ pub struct Faults {
     /// Free cells that nobody can enter for a while, and that no sensor shows to be so.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub closures: Vec<CellSpan>,
+    /// Cells that are blocked for a while, and seen so: somebody stands there, or a door is
+    /// shut.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shut: Vec<CellSpan>,
     /// Cells that no sensor shows for a while, as glass or matt black: what is behind one
     /// is seen as if it were shown.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -70,7 +74,7 @@ impl Faults {
                 .filter(|of| of.robot == robot && of.tick <= until);
             befallen.map(|of| of.tick).max()
         };
-        let is_there = |tick| !self.comes_late(robot) || of(&self.arrivals, tick).is_some();
+        let is_there = |tick| self.has_come(robot, tick);
         let death = of(&self.deaths, tick);
         let restart = of(&self.restarts, tick).filter(|&restart| is_there(restart));
         let life = of(&self.arrivals, tick).max(restart);
@@ -80,6 +84,12 @@ impl Faults {
             (None, Some(_)) => false,
             (None, None) => is_there(tick),
         }
+    }
+
+    /// Whether `robot` is there in `tick`, dead or alive.
+    pub(crate) fn has_come(&self, robot: RobotId, tick: u32) -> bool {
+        let has_arrived = |of: &Event| of.robot == robot && of.tick <= tick;
+        !self.comes_late(robot) || self.arrivals.iter().any(has_arrived)
     }
 
     /// Whether `robot` is not there from the beginning.

@@ -88,7 +88,12 @@ impl Scenario {
     fn check_fault_cells(&self) -> Result<(), ScenarioError> {
         let extent = self.world.extent();
         let faults = &self.conditions.faults;
-        for (option, spans) in [("close", &faults.closures), ("blind", &faults.blind)] {
+        let spans = [
+            ("close", &faults.closures),
+            ("shut", &faults.shut),
+            ("blind", &faults.blind),
+        ];
+        for (option, spans) in spans {
             if let Some(span) = spans.iter().find(|of| !extent.contains(of.cell)) {
                 return Err(ScenarioError::FaultOutside {
                     option,

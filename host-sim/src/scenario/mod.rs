@@ -8,6 +8,7 @@ mod faults;
 pub mod grid;
 pub mod heights;
 mod key;
+mod trouble;
 pub mod voxels;
 
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
@@ -17,6 +18,7 @@ pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
+pub use trouble::{ErrorKind, Trouble, TroubleArgs};
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.
 const FLOWN_BYTE_BUDGET: u16 = 550;
@@ -49,6 +51,9 @@ pub struct Conditions {
     /// What goes wrong with robots, cells and senses.
     #[serde(flatten)]
     pub faults: Faults,
+    /// How the world misleads robots.
+    #[serde(default, skip_serializing_if = "Trouble::is_none")]
+    pub trouble: Trouble,
 }
 
 const fn every_tick() -> u32 {
@@ -69,6 +74,7 @@ impl Conditions {
             seed,
             max_ticks,
             faults: Faults::default(),
+            trouble: Trouble::default(),
         }
     }
 
@@ -116,6 +122,7 @@ impl Conditions {
         check_share("loss", self.loss)?;
         check_share("duplicate", self.air.duplication)?;
         check_share("corrupt", self.air.corruption)?;
+        self.trouble.check()?;
         if let Some(option) = self.of_frames().next()
             && self.medium != MediumKind::Radio
         {
@@ -146,17 +153,21 @@ impl Conditions {
         used.map(|(option, _)| option)
     }
 
-    /// Nothing that names cells or poses of a grid, which `world` does not have.
+    /// Nothing that is of cells or poses of a grid, which `world` does not have.
     fn check_flown(&self, world: &'static str) -> Result<(), ScenarioError> {
         let faults = &self.faults;
         let of_grids = [
             ("close", !faults.closures.is_empty()),
+            ("shut", !faults.shut.is_empty()),
             ("blind", !faults.blind.is_empty()),
             ("sensor-fails", !faults.sensor_failures.is_empty()),
             ("pose-lost", !faults.lost_poses.is_empty()),
         ];
-        match of_grids.into_iter().find(|(_, is_used)| *is_used) {
-            Some((option, _)) => Err(ScenarioError::NotHere { option, world }),
+        let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
+        let trouble = self.trouble.settings(&Trouble::default());
+        let named = trouble.iter().map(|(option, _)| *option);
+        match used.map(|(option, _)| option).chain(named).next() {
+            Some(option) => Err(ScenarioError::NotHere { option, world }),
             None => Ok(()),
         }
     }

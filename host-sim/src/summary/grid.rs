@@ -25,7 +25,12 @@ pub struct Summary {
     pub maps_agree: bool,
     /// Why they do not.
     pub maps_differ_because: Option<&'static str>,
-    /// Moves into obstacles; anything but 0 is a bug of the planner.
+    /// Robots that say in the end that all that they can reach is known, while something
+    /// is not.
+    pub false_claims: usize,
+    /// Steps that ended at a person, a shut door, or an obstacle that a look may have hidden.
+    pub bumps: u32,
+    /// Moves into obstacles that no look had hidden; anything but 0 is a bug of the planner.
     pub violations: usize,
     /// What decided.
     pub planner: PlannerKind,
@@ -55,6 +60,10 @@ pub struct RobotSummary {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Cells that it could reach and that are obstacles on its own map.
+    pub cells_closed: u32,
+    /// Obstacles that are free on its own map.
+    pub cells_opened: u32,
     /// Cells that another living robot's map holds and its own lacks.
     pub cells_unheard: u32,
     /// Work of its planner over the run.
@@ -68,6 +77,8 @@ pub struct RobotSummary {
     pub stop: Option<&'static str>,
     /// The reason in words.
     pub stop_reason: Option<String>,
+    /// Whether it says that all that it can reach is known, while something is not.
+    pub claims_falsely: bool,
     /// Whether it lived to the end of the run.
     pub alive: bool,
     /// What it had from others, and what spoke against them.
@@ -97,6 +108,8 @@ impl Summary {
             maps_agree: outcome.maps_agree(),
             maps_differ_because: (!outcome.maps_agree())
                 .then(|| why_maps_differ(scenario, outcome)),
+            false_claims: outcome.false_claims(),
+            bumps: outcome.bumps,
             violations: outcome.violations.len(),
             planner: scenario.planner,
             range: scenario.range,
@@ -121,12 +134,15 @@ impl RobotSummary {
             blocked_steps: robot.blocked_steps,
             cells_known: robot.cells_known,
             cells_missed: robot.cells_missed,
+            cells_closed: robot.cells_closed,
+            cells_opened: robot.cells_opened,
             cells_unheard: robot.cells_unheard,
             work: robot.work,
             frames_sent: robot.sent.frames,
             bytes_sent: robot.sent.bytes,
             stop: robot.stop.map(|stop| stop.reason().name()),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
+            claims_falsely: robot.claims_falsely(),
             alive: robot.alive,
             hearsay: robot.hearsay,
         }

@@ -3,10 +3,10 @@
 use std::mem::discriminant;
 
 use clap::ValueEnum;
-use egui::{Button, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
+use egui::{Button, CollapsingHeader, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
 use host_sim::planners::PlannerKind;
 use host_sim::scenario::heights::Planner;
-use host_sim::scenario::{Conditions, Faults, MediumKind, Reach};
+use host_sim::scenario::{Conditions, ErrorKind, Faults, MediumKind, Reach, Trouble};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
@@ -47,6 +47,8 @@ impl App {
         self.rival(ui);
         title(ui, "Radio");
         radio(ui, &mut setup.conditions);
+        CollapsingHeader::new("A world that misleads")
+            .show(ui, |ui| trouble(ui, &mut setup.conditions.trouble));
         if (&setup, self.rival) != (&before.0, before.1) {
             if !self.set(setup) {
                 self.rival = before.1;
@@ -144,6 +146,7 @@ impl App {
             Tool::Wall | Tool::Erase => "Drag over cells; the run begins anew.",
             Tool::Place => "Click for one more robot; drag one to another start.",
             Tool::Kill => "Click a robot: from this tick on it is dead.",
+            Tool::Shut => "Click a cell: from this tick on it is shut, or open again.",
         };
         ui.label(RichText::new(hint).weak());
     }
@@ -502,6 +505,7 @@ fn in_words(faults: &Faults) -> String {
         (faults.restarts.len(), "restarted"),
         (faults.resumes.len(), "told to go on"),
         (faults.closures.len(), "cells closed"),
+        (faults.shut.len(), "cells shut"),
         (faults.blind.len(), "cells that no look shows"),
         (faults.sensor_failures.len(), "sensors fail"),
         (faults.lost_poses.len(), "poses lost"),
@@ -509,6 +513,31 @@ fn in_words(faults: &Faults) -> String {
     let some = counts.iter().filter(|(count, _)| *count > 0);
     let words: Vec<String> = some.map(|(count, of)| format!("{count} {of}")).collect();
     words.join(", ")
+}
+
+/// Looks that err, poses that slip, people and doors.
+fn trouble(ui: &mut Ui, trouble: &mut Trouble) {
+    let share = |value| {
+        let slider = Slider::new(value, 0.0..=1.0).logarithmic(true);
+        slider.smallest_positive(0.001).max_decimals(3)
+    };
+    ui.add(share(&mut trouble.false_walls).text("false walls"));
+    ui.add(share(&mut trouble.false_frees).text("false free cells"));
+    choice(
+        ui,
+        "errors",
+        &mut trouble.error_kind,
+        ErrorKind::value_variants(),
+    );
+    ui.add(share(&mut trouble.misplaced).text("misplaced looks"));
+    ui.add(Slider::new(&mut trouble.drift, 0..=500).text("drift every (0: never)"));
+    ui.add(Slider::new(&mut trouble.people, 0..=20).text("people"));
+    ui.add(Slider::new(&mut trouble.doors, 0..=20).text("doors"));
+    ui.add(Slider::new(&mut trouble.looks, 1..=16).text("looks a tick"));
+    ui.checkbox(&mut trouble.see_robots, "robots see each other");
+    if !trouble.is_none() && ui.button("Without all that").clicked() {
+        *trouble = Trouble::default();
+    }
 }
 
 /// What carries messages, and how many are lost.

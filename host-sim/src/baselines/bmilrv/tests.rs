@@ -32,8 +32,8 @@ impl Watched {
             Box::new(robot.unwrap()) as _
         });
         let rules = Rules {
-            solid: false,
             faults,
+            ..Rules::default()
         };
         let sensor = Arc::new(Sensor::new(world.clone(), range));
         let medium = medium::build(&Conditions::new(0, 0), world.clone());

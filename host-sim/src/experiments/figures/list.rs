@@ -6,7 +6,7 @@ use crate::experiments::{Place, Plan, Site};
 use crate::planners::PlannerKind::{
     self, Bmilrv, Closest, Explorer, Greedy, LocalFrontiers, LocalFrontiersSecondChance, MinPos,
 };
-use crate::scenario::MediumKind;
+use crate::scenario::{MediumKind, Trouble};
 use crate::world::{World, paper};
 
 /// Seed of the labyrinths in `fixtures/maps`, and of all figures.
@@ -62,6 +62,7 @@ pub fn figures(effort: Effort, hospital: Option<Arc<World>>) -> Vec<Figure> {
         medium: MediumKind::Ideal,
         syncs: vec![1],
         losses: vec![0.0],
+        trouble: Trouble::default(),
         ranges: vec![5],
         seed: SEED,
     };

@@ -48,6 +48,7 @@ fn trace() -> Trace {
             robot: RobotId(0),
             tick: 60,
         }],
+        shut: vec!["2,2@4-6".parse().unwrap()],
         blind: vec![CellSpan {
             cell: Cell::new(0, 3),
             from: 0,

@@ -1,0 +1,212 @@
+//! What false looks, slipping poses, people and doors do to the explorer: false claims,
+//! runs that did not end, and ticks against the same worlds without any of it.
+//!
+//! `cargo run --release -p host-sim --example senses_table [-- --worlds 50 MAP…]`
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Parser;
+use host_sim::planners::PlannerKind;
+use host_sim::run::{Options, Outcome, run};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{ErrorKind, MediumKind, Trouble};
+use host_sim::sensor::Sensor;
+use host_sim::world::{Family, ReadOptions, Starts, World, generate};
+use rayon::prelude::*;
+
+const RANGE: u8 = 5;
+
+#[derive(Parser)]
+struct Arguments {
+    /// Worlds of rooms, and as many caves.
+    #[arg(long, default_value_t = 10)]
+    worlds: u64,
+    /// Starts in each world.
+    #[arg(long, default_value_t = 2)]
+    starts: u64,
+    /// Side of these worlds in cells.
+    #[arg(long, default_value_t = 48)]
+    side: u16,
+    /// Numbers of robots.
+    #[arg(long, value_delimiter = ',', default_value = "1,3")]
+    robots: Vec<usize>,
+    /// Only conditions whose names hold this.
+    #[arg(long, default_value = "")]
+    only: String,
+    /// Maps to run in besides.
+    maps: Vec<PathBuf>,
+}
+
+/// A line of the table.
+struct Condition {
+    name: String,
+    trouble: Trouble,
+    medium: MediumKind,
+    loss: f64,
+}
+
+fn conditions() -> Vec<Condition> {
+    let none = Trouble::default();
+    let walls = |false_walls, error_kind| Trouble {
+        false_walls,
+        error_kind,
+        ..none
+    };
+    let both = |share| Trouble {
+        false_walls: share,
+        false_frees: share,
+        ..none
+    };
+    let mut troubles = vec![none];
+    for kind in [ErrorKind::Transient, ErrorKind::Viewpoint] {
+        troubles.extend([0.001, 0.01, 0.05].map(|share| walls(share, kind)));
+    }
+    troubles.extend([0.01, 0.05].map(|share| walls(share, ErrorKind::Far)));
+    troubles.extend([0.01, 0.05].map(both));
+    troubles.extend([0.01, 0.05, 0.2].map(|misplaced| Trouble { misplaced, ..none }));
+    troubles.extend([200, 50].map(|drift| Trouble { drift, ..none }));
+    troubles.extend([2, 8].map(|people| Trouble { people, ..none }));
+    troubles.push(Trouble { doors: 6, ..none });
+    troubles.push(Trouble {
+        see_robots: true,
+        ..none
+    });
+    let name = |trouble: &Trouble| match trouble.is_none() {
+        true => "none".to_owned(),
+        false => trouble.to_string(),
+    };
+    let ideal = troubles.into_iter().map(|trouble| Condition {
+        name: name(&trouble),
+        trouble,
+        medium: MediumKind::Ideal,
+        loss: 0.0,
+    });
+    let mut conditions: Vec<Condition> = ideal.collect();
+    conditions.push(Condition {
+        name: format!("{}, half of the frames lost", both(0.01)),
+        trouble: both(0.01),
+        medium: MediumKind::Radio,
+        loss: 0.5,
+    });
+    conditions
+}
+
+/// A place to begin in.
+struct Site {
+    sensor: Arc<Sensor>,
+    starts: Starts,
+    seed: u64,
+}
+
+/// Sums over runs of one cell of the table.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    runs: u32,
+    /// Runs with a false claim.
+    false_claims: u32,
+    /// Runs that did not end in time.
+    endless: u32,
+    /// Logarithms of the ratios of ticks.
+    ticks: f64,
+}
+
+impl Sum {
+    fn and(self, other: Self) -> Self {
+        Self {
+            runs: self.runs + other.runs,
+            false_claims: self.false_claims + other.false_claims,
+            endless: self.endless + other.endless,
+            ticks: self.ticks + other.ticks,
+        }
+    }
+
+    fn of(outcome: &Outcome, calm: &Outcome) -> Self {
+        let ticks = |outcome: &Outcome| f64::from(outcome.ticks.max(1)).ln();
+        Self {
+            runs: 1,
+            false_claims: u32::from(outcome.false_claims() > 0),
+            endless: u32::from(outcome.ticks_to_stopped.is_none()),
+            ticks: ticks(outcome) - ticks(calm),
+        }
+    }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let sites = sites(&arguments)?;
+    println!(
+        "False claims in {} runs, ×ticks; in brackets runs that did not end.\n",
+        sites.len()
+    );
+    println!("| condition | robots | truthful |\n|---|---:|---|");
+    for condition in conditions() {
+        if !condition.name.contains(&arguments.only) {
+            continue;
+        }
+        for &robots in &arguments.robots {
+            let sum = sites
+                .par_iter()
+                .map(|site| measure(site, &condition, robots))
+                .reduce(Sum::default, Sum::and);
+            let runs = f64::from(sum.runs.max(1));
+            let endless = match sum.endless {
+                0 => String::new(),
+                endless => format!(" ({endless})"),
+            };
+            println!(
+                "| {} | {robots} | {:.1} %{endless} ×{:.2} |",
+                condition.name,
+                100.0 * f64::from(sum.false_claims) / runs,
+                (sum.ticks / runs).exp(),
+            );
+        }
+    }
+    Ok(())
+}
+
+fn sites(arguments: &Arguments) -> Result<Vec<Site>, Box<dyn Error>> {
+    let mut worlds = Vec::new();
+    for seed in 0..arguments.worlds {
+        for family in [Family::Rooms, Family::Cave] {
+            worlds.push(generate(family, arguments.side, arguments.side, seed)?);
+        }
+    }
+    for path in &arguments.maps {
+        worlds.push(World::read(path, &ReadOptions::default())?);
+    }
+    let mut sites = Vec::new();
+    for world in worlds {
+        let sensor = Arc::new(Sensor::new(Arc::new(world), RANGE));
+        sites.extend((0..arguments.starts).map(|seed| Site {
+            sensor: sensor.clone(),
+            starts: Starts::Random(seed),
+            seed,
+        }));
+    }
+    Ok(sites)
+}
+
+/// A run under the condition, against the same without trouble.
+fn measure(site: &Site, condition: &Condition, robots: usize) -> Sum {
+    let world = site.sensor.world();
+    let starts = world.place(robots, &site.starts, false);
+    let starts = starts.expect("cells may be shared");
+    let run = |condition: Option<&Condition>| {
+        let mut scenario = Scenario::new(world.clone(), starts.clone(), PlannerKind::Explorer);
+        scenario.range = RANGE;
+        scenario.conditions.seed = site.seed;
+        if let Some(condition) = condition {
+            scenario.conditions.trouble = condition.trouble;
+            scenario.conditions.medium = condition.medium;
+            scenario.conditions.loss = condition.loss;
+        }
+        let options = Options {
+            sensor: Some(site.sensor.clone()),
+            ..Options::default()
+        };
+        run(&scenario, options).expect("the scenario is in range").0
+    };
+    Sum::of(&run(Some(condition)), &run(None))
+}

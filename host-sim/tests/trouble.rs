@@ -1,0 +1,192 @@
+//! Worlds that mislead robots, in whole runs.
+
+use std::sync::Arc;
+
+use clap::ValueEnum;
+use host_sim::draw::Coverage;
+use host_sim::planners::PlannerKind;
+use host_sim::record::grid::Trace;
+use host_sim::run::{self, Options, Outcome};
+use host_sim::scenario::grid::Scenario;
+use host_sim::scenario::{ErrorKind, MediumKind, Trouble};
+use host_sim::world::{Family, Starts, generate};
+use proptest::prelude::*;
+
+fn scenario(trouble: Trouble) -> Scenario {
+    let world = Arc::new(generate(Family::Rooms, 31, 24, 7).unwrap());
+    let starts = world.place(3, &Starts::Random(7), false).unwrap();
+    let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
+    scenario.conditions.trouble = trouble;
+    scenario
+}
+
+fn run(scenario: &Scenario) -> (Outcome, Trace) {
+    let options = Options {
+        trace: true,
+        ..Options::default()
+    };
+    let (outcome, trace) = run::run(scenario, options).unwrap();
+    (outcome, trace.unwrap())
+}
+
+#[test]
+fn what_robots_get_wrong_is_counted() {
+    let (calm, _) = run(&scenario(Trouble::default()));
+    assert_eq!((calm.false_claims(), calm.bumps), (0, 0));
+    for robot in &calm.robots {
+        assert_eq!((robot.cells_closed, robot.cells_opened), (0, 0));
+    }
+    let (walled, _) = run(&scenario(Trouble {
+        false_walls: 0.2,
+        ..Trouble::default()
+    }));
+    assert!(walled.false_claims() > 0 && walled.violations.is_empty());
+    assert!(walled.robots.iter().all(|robot| robot.cells_closed > 0));
+    assert_eq!(walled.bumps, 0, "no wall was hidden");
+    let (off, _) = run(&scenario(Trouble {
+        misplaced: 0.3,
+        ..Trouble::default()
+    }));
+    assert!(off.bumps > 0 && off.violations.is_empty());
+    assert!(off.robots.iter().any(|robot| robot.cells_opened > 0));
+}
+
+/// Each kind alone, and all at once.
+fn troubles() -> Vec<Trouble> {
+    let none = Trouble::default();
+    let errs = Trouble {
+        false_walls: 0.05,
+        false_frees: 0.05,
+        ..none
+    };
+    let error_kind = ErrorKind::Viewpoint;
+    vec![
+        errs,
+        Trouble { error_kind, ..errs },
+        Trouble {
+            misplaced: 0.1,
+            ..none
+        },
+        Trouble { drift: 50, ..none },
+        Trouble { people: 4, ..none },
+        Trouble { doors: 4, ..none },
+        Trouble {
+            see_robots: true,
+            ..none
+        },
+        Trouble {
+            error_kind: ErrorKind::Far,
+            misplaced: 0.05,
+            drift: 100,
+            people: 3,
+            doors: 3,
+            see_robots: true,
+            looks: 3,
+            ..errs
+        },
+    ]
+}
+
+#[test]
+fn a_world_misleads_in_the_same_way_again_and_in_its_trace() {
+    let (_, calm) = run(&scenario(Trouble::default()));
+    for trouble in troubles() {
+        let scenario = scenario(trouble);
+        let (outcome, trace) = run(&scenario);
+        assert_ne!(trace.records, calm.records, "{trouble}");
+        let (again, trace_again) = run(&scenario);
+        assert_eq!(again, outcome, "{trouble}");
+        assert_eq!(trace_again.records, trace.records, "{trouble}");
+
+        let mut file = Vec::new();
+        trace.write(&mut file).unwrap();
+        let read = Trace::read(&file[..]).unwrap();
+        assert_eq!(read.scenario.conditions, scenario.conditions);
+        assert_eq!(Coverage::from(&read).seen, outcome.coverage, "{trouble}");
+    }
+}
+
+/// Up to 40 % of all that is seen is wrong; people, doors and other robots are in the way.
+fn trouble() -> impl Strategy<Value = Trouble> {
+    let share = || prop_oneof![Just(0.0), 0.0..0.4f64];
+    (
+        (
+            share(),
+            share(),
+            prop::sample::select(ErrorKind::value_variants()),
+        ),
+        (share(), prop_oneof![Just(0u32), 20u32..300]),
+        (0u16..4, 0u16..4, any::<bool>(), 1u8..4),
+    )
+        .prop_map(
+            |(
+                (false_walls, false_frees, error_kind),
+                (misplaced, drift),
+                (people, doors, see_robots, looks),
+            )| Trouble {
+                false_walls,
+                false_frees,
+                error_kind,
+                misplaced,
+                drift,
+                people,
+                doors,
+                see_robots,
+                looks,
+            },
+        )
+}
+
+/// A small world that misleads.
+fn misled() -> impl Strategy<Value = Scenario> {
+    (
+        (0..Family::ALL.len(), 8u16..24, 8u16..24, any::<u64>()),
+        (1usize..=4, 1u8..=8, any::<bool>()),
+        (any::<bool>(), prop_oneof![Just(0.0), 0.0..0.9f64]),
+        trouble(),
+    )
+        .prop_filter_map(
+            "no such world",
+            |((family, width, height, seed), (robots, range, solid), (radio, loss), trouble)| {
+                let world = generate(Family::ALL[family], width, height, seed).ok()?;
+                let starts = world.place(robots, &Starts::Random(seed), solid).ok()?;
+                let mut scenario = Scenario::new(Arc::new(world), starts, PlannerKind::Explorer);
+                scenario.range = range;
+                scenario.solid = solid;
+                let conditions = &mut scenario.conditions;
+                conditions.seed = seed;
+                conditions.loss = loss;
+                conditions.trouble = trouble;
+                conditions.max_ticks *= 10;
+                if radio {
+                    conditions.medium = MediumKind::Radio;
+                }
+                Some(scenario)
+            },
+        )
+}
+
+/// As many small worlds as `PROPTEST_CASES` says, or these.
+fn soak() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES");
+    ProptestConfig {
+        cases: asked
+            .ok()
+            .and_then(|cases| cases.parse().ok())
+            .unwrap_or(200),
+        ..ProptestConfig::default()
+    }
+}
+
+proptest! {
+    #![proptest_config(soak())]
+
+    #[test]
+    fn every_misled_robot_stops(scenario in misled()) {
+        let (outcome, _) = run::run(&scenario, Options::default()).unwrap();
+        prop_assert!(outcome.violations.is_empty(), "{:?}", outcome.violations);
+        for (index, robot) in outcome.robots.iter().enumerate() {
+            prop_assert!(robot.stop.is_some(), "robot {index} goes on for ever");
+        }
+    }
+}

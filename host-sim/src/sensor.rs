@@ -34,6 +34,13 @@ pub struct View {
 }
 
 impl View {
+    /// The cells that are shown as they are: free ones, and obstacles of the world.
+    pub fn cells(&self, world: &World) -> impl Iterator<Item = Cell> {
+        let obstacles = self.sighting.blocked_cells();
+        let obstacles = obstacles.filter(|&cell| !world.is_free(cell));
+        self.sighting.free_cells().chain(obstacles)
+    }
+
     pub(crate) fn new(world: &World, sighting: Sighting) -> Self {
         let columns = tile_columns(world);
         let mut free: Vec<(usize, u64)> = Vec::new();

@@ -333,7 +333,7 @@ fn bad_options_are_named() {
     );
     let share = "0 (nothing) to 1";
     bad(&["--false-walls", "1.5"], &["--false-walls", share]);
-    bad(&["--false-frees", "-1"], &["--false-frees", share]);
+    bad(&["--false-frees=-1"], &["--false-frees", share]);
     bad(&["--misplaced", "often"], &["--misplaced", share]);
     bad(&["--error-kind", "wild"], &["--error-kind", "viewpoint"]);
     bad(&["--looks", "0"], &["--looks", "1..=16"]);

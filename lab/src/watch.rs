@@ -439,10 +439,8 @@ impl History {
                 }
                 let robot = usize::from(record.robot);
                 let view = senses.view(robot, record.at);
-                let seen = view.iter().flat_map(|view| {
-                    let sighting = &view.sighting;
-                    sighting.free_cells().chain(sighting.blocked_cells())
-                });
+                let world = senses.sensor().world();
+                let seen = view.iter().flat_map(|view| view.cells(world));
                 for cell in seen {
                     if extent.contains(cell) && self.seen_since[index(cell)] == NEVER {
                         self.seen_since[index(cell)] = tick;

@@ -63,8 +63,7 @@ impl<'a> Replay<'a> {
         let robot = usize::from(record.robot);
         let extent = self.trace.scenario.world.extent();
         if let Some(view) = self.senses.view(robot, record.at) {
-            let sighting = &view.sighting;
-            for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
+            for cell in view.cells(&self.trace.scenario.world) {
                 if extent.contains(cell) {
                     let seen = &mut self.seen[index(extent, cell)];
                     self.seen_cells += u32::from(!*seen && self.reachable.contains(cell));

@@ -202,7 +202,7 @@ mod tests {
     }
 
     fn assert_near(share: f64, expected: f64) {
-        assert!((share - expected).abs() < 0.03, "{share}, not {expected}");
+        assert!((share - expected).abs() < 0.05, "{share}, not {expected}");
     }
 
     #[test]
@@ -256,7 +256,9 @@ mod tests {
             [0.0; 2]
         );
         let beyond = shares(&far, |cell| cell.distance_squared(AT) > 9);
-        beyond.map(|share| assert_near(share, 0.3));
+        for share in beyond {
+            assert_near(share, 0.3);
+        }
     }
 
     #[test]

@@ -11,7 +11,7 @@ use planner_core::radio::LinkConfig;
 use planner_core::{AnyPlanner, Cell, Extent, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::baselines::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, StrongMinPos};
+use crate::baselines::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, Rule, StrongMinPos};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -107,21 +107,20 @@ impl PlannerKind {
             start,
             link,
         } = setup;
-        Ok(match self {
+        let rule: Box<dyn Rule> = match self {
             Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {
                 unreachable!("planner-core has them")
             }
-            Self::Closest => Box::new(Peer::new(Closest, id, extent, start, link)?),
-            Self::Greedy => Box::new(Peer::new(Greedy::default(), id, extent, start, link)?),
-            Self::MinPos => Box::new(Peer::new(PaperMinPos::default(), id, extent, start, link)?),
-            Self::MinPosStrong => {
-                Box::new(Peer::new(StrongMinPos::default(), id, extent, start, link)?)
-            }
+            Self::Closest => Box::new(Closest),
+            Self::Greedy => Box::new(Greedy::default()),
+            Self::MinPos => Box::new(PaperMinPos::default()),
+            Self::MinPosStrong => Box::new(StrongMinPos::default()),
             Self::Bmilrv => {
                 let marks = Marks::new(extent, start);
-                Box::new(Bmilrv::new(marks, id, extent, start, link)?)
+                return Ok(Box::new(Bmilrv::new(marks, id, extent, start, link)?));
             }
-        })
+        };
+        Ok(Box::new(Peer::new(rule, id, extent, start, link)?))
     }
 }
 

@@ -11,7 +11,9 @@ use super::waves::{Spot, Waves};
 pub struct Closest;
 
 impl Rule for Closest {
-    const TERM: Term = Term::PAPER;
+    fn term(&self) -> Term {
+        Term::PAPER
+    }
 
     fn assign(&mut self, waves: &mut Waves, _team: &[(RobotId, Cell)]) -> Option<Spot> {
         let me = waves.me();

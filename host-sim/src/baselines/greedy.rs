@@ -63,7 +63,9 @@ impl Greedy {
 }
 
 impl Rule for Greedy {
-    const TERM: Term = Term::PAPER;
+    fn term(&self) -> Term {
+        Term::PAPER
+    }
 
     fn assign(&mut self, waves: &mut Waves, team: &[(RobotId, Cell)]) -> Option<Spot> {
         self.groups.find(waves, Frontier::Component);

@@ -77,11 +77,12 @@ impl<const STRONG: bool> MinPos<STRONG> {
 }
 
 impl<const STRONG: bool> Rule for MinPos<STRONG> {
-    const TERM: Term = if STRONG {
-        Term::EVERY_MOVE
-    } else {
-        Term::PAPER
-    };
+    fn term(&self) -> Term {
+        match STRONG {
+            true => Term::EVERY_MOVE,
+            false => Term::PAPER,
+        }
+    }
 
     fn assign(&mut self, waves: &mut Waves, _team: &[(RobotId, Cell)]) -> Option<Spot> {
         let frontier = if STRONG {

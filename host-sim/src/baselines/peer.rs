@@ -12,7 +12,7 @@ use super::waves::{Spot, Waves};
 /// Which frontier a robot goes to.
 pub trait Rule {
     /// How long an assignment lasts.
-    const TERM: Term;
+    fn term(&self) -> Term;
 
     /// The frontier cell for the robot [`Waves::me`]. The waves are at distance
     /// 0; its own must have reached the answer. `None` if it can reach none.
@@ -48,8 +48,8 @@ const CLOSED_TICKS: u32 = 8;
 const PATIENCE: u32 = 1000;
 
 /// A planner that follows a [`Rule`].
-pub struct Peer<R, const TW: usize, const TH: usize> {
-    rule: R,
+pub struct Peer<const TW: usize, const TH: usize> {
+    rule: Box<dyn Rule>,
     id: RobotId,
     map: Box<Map<TW, TH>>,
     link: Link<TH>,
@@ -75,13 +75,13 @@ pub struct Peer<R, const TW: usize, const TH: usize> {
     work: u32,
 }
 
-impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
+impl<const TW: usize, const TH: usize> Peer<TW, TH> {
     /// Robot `id` at `start` on a grid of `extent`, with this use of the radio.
     ///
     /// # Errors
     /// A grid that a map of this size does not hold.
     pub fn new(
-        rule: R,
+        rule: Box<dyn Rule>,
         id: RobotId,
         extent: Extent,
         start: Cell,
@@ -116,7 +116,8 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
     /// Whether the assignment holds and its next cell can be entered.
     fn has_way(&self) -> bool {
         let is_resolved = || !self.goal.is_some_and(|goal| self.map.is_frontier(goal));
-        let has_ended = self.moves >= R::TERM.moves || R::TERM.until_resolved && is_resolved();
+        let term = self.rule.term();
+        let has_ended = self.moves >= term.moves || term.until_resolved && is_resolved();
         !has_ended && self.way.last().is_some_and(|&next| self.map.is_free(next))
     }
 
@@ -167,7 +168,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Peer<R, TW, TH> {
     }
 }
 
-impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, TH> {
+impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
         self.is_astray = !self.map.extent().contains(sighting.centre());
         if self.is_astray {
@@ -262,7 +263,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Planner<TW, TH> for Peer<R, TW, 
     }
 }
 
-impl<R: Rule, const TW: usize, const TH: usize> Contact<TW, TH> for Peer<R, TW, TH> {
+impl<const TW: usize, const TH: usize> Contact<TW, TH> for Peer<TW, TH> {
     fn take_changed(&mut self) -> TileSet<TH> {
         self.link.take_changed(&mut self.map)
     }
@@ -282,7 +283,7 @@ impl<R: Rule, const TW: usize, const TH: usize> Contact<TW, TH> for Peer<R, TW, 
     }
 }
 
-impl<R: Rule, const TW: usize, const TH: usize> Inspect<TW, TH> for Peer<R, TW, TH> {
+impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Peer<TW, TH> {
     fn work(&self) -> u32 {
         self.work
     }

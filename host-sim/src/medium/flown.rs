@@ -1,12 +1,13 @@
-//! Terrains and scenes, as the air sees them, and what can be forged about them.
+//! Terrains and scenes, as the air sees them, how robots in the air speak, and what can be
+//! forged about them.
 
-use planner_core::radio::{GridId, HeightRecord, LinkConfig, SurfaceFrame, VoxelFrame};
+use planner_core::radio::{GridId, HeightRecord, LinkConfig, MAX_LEN, SurfaceFrame, VoxelFrame};
 use planner_core::surface::{self, Height};
 use planner_core::volume::{self, Voxel, VoxelPatch};
 use planner_core::{Cell, Extent, Point, Status};
 
 use super::grid::{any_bits, any_cell};
-use super::{Claim, Space};
+use super::{Claim, Radio, Space, Station};
 use crate::dice::Dice;
 use crate::scene::Scene;
 use crate::terrain::Terrain;
@@ -35,6 +36,54 @@ impl Space for Scene {
 
     fn is_in_sight(&self, from: Voxel, to: Voxel) -> bool {
         volume::in_sight(from, to, |voxel| self.is_occupied(voxel) != Some(true))
+    }
+}
+
+/// Robots in the air speak before anybody decides, and again after their flight.
+impl<W: Space> Radio<W> {
+    /// What everybody has to say before anybody decides, within so many bytes a robot;
+    /// one frame of them is left for after the flight.
+    pub(crate) fn share<S: Station<Place = W::Place>>(
+        &mut self,
+        tick: u32,
+        robots: &mut [S],
+        byte_budget: u16,
+    ) {
+        self.deliver(tick, robots);
+        let frames = usize::from(byte_budget) / MAX_LEN;
+        for speaker in 0..robots.len() {
+            self.speak(tick, robots, speaker, frames.saturating_sub(1).max(1));
+        }
+        self.forge(tick, robots);
+    }
+
+    /// A robot sends what its budget allows, at most so many frames; what is due is heard.
+    pub(crate) fn speak<S: Station<Place = W::Place>>(
+        &mut self,
+        tick: u32,
+        robots: &mut [S],
+        speaker: usize,
+        most: usize,
+    ) {
+        self.transmit(tick, robots, speaker, most);
+        self.deliver(tick, robots);
+    }
+
+    /// The robots that hear in `tick` what robot `from` says without a frame.
+    pub(crate) fn listeners<S: Station<Place = W::Place>>(
+        &mut self,
+        tick: u32,
+        robots: &[S],
+        from: usize,
+    ) -> Vec<usize> {
+        let end = |robot: &S| (robot.id(), robot.place());
+        let hears = |&to: &usize| {
+            to != from
+                && robots[to].is_awake()
+                && self.is_open(tick)
+                && self.air.carries(tick, end(&robots[from]), end(&robots[to]))
+        };
+        (0..robots.len()).filter(hears).collect()
     }
 }
 

@@ -106,8 +106,7 @@ fn open_on(
     scenario.check()?;
     let Extent { width, height } = terrain.extent();
     Ok(match width.max(height).div_ceil(8) {
-        0..=4 => Box::new(Simulation::<4>::new(host, terrain, scenario)?),
-        5..=13 => Box::new(Simulation::<13>::new(host, terrain, scenario)?),
+        0..=13 => Box::new(Simulation::<13>::new(host, terrain, scenario)?),
         14..=25 => Box::new(Simulation::<25>::new(host, terrain, scenario)?),
         _ => Box::new(Simulation::<64>::new(host, terrain, scenario)?),
     })
@@ -357,34 +356,14 @@ impl<const T: usize> Simulation<T> {
 
     /// What everybody has to say to everybody, before anybody decides.
     fn share(&mut self) {
-        match self.scenario.conditions.medium {
+        let conditions = &self.scenario.conditions;
+        match conditions.medium {
             MediumKind::Ideal => self.share_maps(),
             MediumKind::Radio => {
-                self.radio.deliver(self.now, &mut self.robots);
-                let frames = usize::from(self.scenario.conditions.byte_budget) / MAX_LEN;
-                // One is left for after the flight.
-                for i in 0..self.robots.len() {
-                    self.transmit(i, frames.saturating_sub(1).max(1));
-                }
-                self.radio.forge(self.now, &mut self.robots);
+                let budget = conditions.byte_budget;
+                self.radio.share(self.now, &mut self.robots, budget);
             }
         }
-    }
-
-    /// Robot `i` sends as many frames as its budget allows, at most `most`.
-    fn transmit(&mut self, i: usize, most: usize) {
-        self.radio.transmit(self.now, &mut self.robots, i, most);
-        self.radio.deliver(self.now, &mut self.robots);
-    }
-
-    /// Whether robot `to` hears now what robot `from` says, without a frame.
-    fn hears(&mut self, from: usize, to: usize) -> bool {
-        let end = |robot: &Robot<T>| (robot.id, robot.at);
-        let (from, to) = (&self.robots[from], &self.robots[to]);
-        from.id != to.id
-            && to.awake
-            && self.radio.is_open(self.now)
-            && self.radio.air.carries(self.now, end(from), end(to))
     }
 
     /// Everybody's position and news to everybody, however much it is.
@@ -402,13 +381,11 @@ impl<const T: usize> Simulation<T> {
             let Some((status, patches)) = message else {
                 continue;
             };
-            for to in 0..self.robots.len() {
-                if self.hears(from, to) {
-                    let pilot = self.robots[to].pilot.get_mut();
-                    pilot.hear(RobotId(from as u8), *status);
-                    for patch in patches {
-                        pilot.merge(patch);
-                    }
+            for to in self.radio.listeners(self.now, &self.robots, from) {
+                let pilot = self.robots[to].pilot.get_mut();
+                pilot.hear(RobotId(from as u8), *status);
+                for patch in patches {
+                    pilot.merge(patch);
                 }
             }
         }
@@ -469,15 +446,11 @@ impl<const T: usize> Simulation<T> {
         self.robots[i].stopped = self.trace.stops[i].is_some();
         let status = self.robots[i].pilot.get().status();
         match self.scenario.conditions.medium {
-            MediumKind::Radio => self.transmit(i, 1),
+            MediumKind::Radio => self.radio.speak(self.now, &mut self.robots, i, 1),
             MediumKind::Ideal => {
-                for to in 0..self.robots.len() {
-                    if self.hears(i, to) {
-                        self.robots[to]
-                            .pilot
-                            .get_mut()
-                            .hear(RobotId(i as u8), status);
-                    }
+                for to in self.radio.listeners(self.now, &self.robots, i) {
+                    let pilot = self.robots[to].pilot.get_mut();
+                    pilot.hear(RobotId(i as u8), status);
                 }
             }
         }

@@ -280,13 +280,8 @@ impl Simulation {
         match conditions.medium {
             MediumKind::Ideal => self.share_maps(),
             MediumKind::Radio => {
-                self.radio.deliver(self.now, &mut self.robots);
-                let frames = usize::from(conditions.byte_budget) / MAX_LEN;
-                // One is left for after the flight.
-                for i in 0..self.robots.len() {
-                    self.transmit(i, frames.saturating_sub(1).max(1));
-                }
-                self.radio.forge(self.now, &mut self.robots);
+                let budget = conditions.byte_budget;
+                self.radio.share(self.now, &mut self.robots, budget);
             }
         }
     }
@@ -298,30 +293,12 @@ impl Simulation {
         let messages: Vec<_> = self.robots.iter_mut().map(news).collect();
         for (from, message) in messages.iter().enumerate() {
             let Some(patches) = message else { continue };
-            for to in 0..self.robots.len() {
-                if self.hears(from, to) {
-                    for patch in patches {
-                        self.robots[to].planner.merge(patch);
-                    }
+            for to in self.radio.listeners(self.now, &self.robots, from) {
+                for patch in patches {
+                    self.robots[to].planner.merge(patch);
                 }
             }
         }
-    }
-
-    /// Robot `i` sends as many frames as its budget allows, at most `most`.
-    fn transmit(&mut self, i: usize, most: usize) {
-        self.radio.transmit(self.now, &mut self.robots, i, most);
-        self.radio.deliver(self.now, &mut self.robots);
-    }
-
-    /// Whether robot `to` hears now what robot `from` says, without a frame.
-    fn hears(&mut self, from: usize, to: usize) -> bool {
-        let end = |robot: &Robot| (robot.id, robot.at);
-        let (from, to) = (&self.robots[from], &self.robots[to]);
-        from.id != to.id
-            && to.alive
-            && self.radio.is_open(self.now)
-            && self.radio.air.carries(self.now, end(from), end(to))
     }
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
@@ -340,13 +317,11 @@ impl Simulation {
         self.robots[i].stopped = stop.is_some();
         let status = self.robots[i].planner.status();
         match self.trace.scenario.conditions.medium {
-            MediumKind::Radio => self.transmit(i, 1),
+            MediumKind::Radio => self.radio.speak(self.now, &mut self.robots, i, 1),
             MediumKind::Ideal => {
-                for other in 0..self.robots.len() {
-                    if self.hears(i, other) {
-                        let id = self.robots[i].id;
-                        self.robots[other].planner.hear(id, status);
-                    }
+                let id = self.robots[i].id;
+                for to in self.radio.listeners(self.now, &self.robots, i) {
+                    self.robots[to].planner.hear(id, status);
                 }
             }
         }

@@ -204,7 +204,7 @@ pub fn grid_hash<const TW: usize, const TH: usize>(map: &Map<TW, TH>) -> u32 {
     for y in 0..rows {
         for x in 0..columns {
             let tile = map.tile_inside(TileIndex { x, y });
-            for word in [tile.known, tile.obstacle, tile.visited] {
+            for word in tile.planes() {
                 hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
             }
         }

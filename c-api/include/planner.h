@@ -144,6 +144,9 @@ typedef enum {
   // It asks for a look in the direction `look`: turn the sensor there, then observe.
   // A robot that sees all around need not turn.
   PLANNER_WAIT_LOOK = 5,
+  // The last look saw the next cell of its way blocked, which its map calls free: it
+  // looks again, a few times, and then tries all the same.
+  PLANNER_WAIT_OBSTRUCTED = 6,
 } PlannerWait;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.

@@ -354,6 +354,7 @@ fn a_wait_has_a_reason_and_a_look_a_direction() {
         (Some(Wait::Pose), PlannerWait::Pose),
         (Some(Wait::Search), PlannerWait::Search),
         (Some(Wait::Closed), PlannerWait::Closed),
+        (Some(Wait::Obstructed), PlannerWait::Obstructed),
         (Some(Wait::Look(Direction::East)), PlannerWait::Look),
     ];
     for (waiting, wait) in waits {

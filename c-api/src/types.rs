@@ -240,6 +240,9 @@ pub enum PlannerWait {
     /// It asks for a look in the direction `look`: turn the sensor there, then observe.
     /// A robot that sees all around need not turn.
     Look = 5,
+    /// The last look saw the next cell of its way blocked, which its map calls free: it
+    /// looks again, a few times, and then tries all the same.
+    Obstructed = 6,
 }
 
 /// What a tick decided.
@@ -339,6 +342,7 @@ impl PlannerAction {
                     Some(Wait::Pose) => PlannerWait::Pose,
                     Some(Wait::Search) => PlannerWait::Search,
                     Some(Wait::Closed) => PlannerWait::Closed,
+                    Some(Wait::Obstructed) => PlannerWait::Obstructed,
                     Some(Wait::Look(direction)) => {
                         told.look = direction.into();
                         PlannerWait::Look

@@ -47,9 +47,8 @@ fn cells(bytes: &[u8], extent: Extent, buffer: &mut [u8; MAX_LEN]) -> Option<usi
     assert!(extent.contains(frame.status.position));
     assert!(frame.status.goal.is_none_or(|goal| extent.contains(goal)));
     for record in &frame.tiles {
-        assert_inside(record.tile.known, extent, |bit| record.at.cell(bit));
-        assert_eq!(record.tile.obstacle & !record.tile.known, 0);
-        assert_eq!(record.tile.visited & !record.tile.free(), 0);
+        assert_inside(record.tile.known() | record.tile.doubtful(), extent, |bit| record.at.cell(bit));
+        assert_eq!(record.tile.obstacle() & record.tile.free(), 0);
     }
     Some(frame.encode(None, buffer))
 }

@@ -202,11 +202,7 @@ fn forged(kind: u8, script: &mut Script<'_>, extent: Extent, aims: [Option<Cell>
         .chain(0..kind >> 7)
         .map(|_| TileRecord {
             at: TileIndex::new(script.byte() % 4, script.byte() % 4),
-            tile: Tile {
-                known: script.word(),
-                obstacle: script.word(),
-                visited: script.word(),
-            },
+            tile: Tile::from_planes([script.word(), script.word(), script.word()]),
         })
         .map(|record| inside(record, extent))
         .collect();
@@ -224,17 +220,8 @@ fn inside(record: TileRecord, extent: Extent) -> TileRecord {
     let mask = (0..64)
         .filter(|&bit| extent.contains(record.at.cell(bit)))
         .fold(0, |mask, bit| mask | 1 << bit);
-    let Tile {
-        known,
-        obstacle,
-        visited,
-    } = record.tile;
     TileRecord {
-        tile: Tile {
-            known: known & mask,
-            obstacle: obstacle & mask,
-            visited: visited & mask,
-        },
+        tile: record.tile.only(mask),
         ..record
     }
 }
@@ -245,8 +232,8 @@ fn assert_sound(map: &Map<3, 3>) {
     for (x, y) in (0..3).flat_map(|y| (0..3).map(move |x| (x, y))) {
         let at = TileIndex::new(x, y);
         let tile = map.tile_inside(at);
-        assert_eq!(tile.obstacle & !tile.known, 0);
-        assert_eq!(tile.visited & !tile.free(), 0);
+        assert_eq!(tile.obstacle() & tile.free(), 0);
+        assert_eq!(tile.visited() & !tile.free(), 0);
         again.join_tile(at, tile);
     }
     assert_eq!(map.frontiers(), again.frontiers());

@@ -177,10 +177,11 @@ fn of_robot(state: &dyn Stepping, robot: usize, extent: Extent) -> Vec<Known> {
     let mut known = vec![Known::Unknown; extent.cells() as usize];
     for at in tiles(extent) {
         let tile = state.tile(robot, at);
-        for bit in planner_core::tile::bits(tile.known) {
+        for bit in planner_core::tile::bits(tile.known()) {
             let cell = at.cell(bit);
             if extent.contains(cell) {
-                known[cell.y as usize * width + cell.x as usize] = match tile.obstacle >> bit & 1 {
+                known[cell.y as usize * width + cell.x as usize] = match tile.obstacle() >> bit & 1
+                {
                     1 => Known::Obstacle,
                     _ => Known::Free,
                 };

@@ -265,6 +265,9 @@ pub enum Wait {
     Search,
     /// What is left lies behind cells that refused a step. They are tried again later.
     Closed,
+    /// The last look saw the next cell of its way blocked, which the map calls free: it
+    /// looks again, a few times, and then tries all the same.
+    Obstructed,
     /// It asks for a look in this direction: turn the sensor there, then observe. A
     /// robot that sees all around need not turn.
     Look(Direction),

@@ -71,7 +71,7 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl AnyPlanner<TW, TH>) 
 fn ask<const TW: usize, const TH: usize>(own: &Map<TW, TH>, other: &Map<TW, TH>) {
     let mut map = own.clone();
     black_box(map.join(other));
-    map.visit(any::cell());
+    map.stand(any::cell());
     let cell = any::cell();
     black_box((map.is_frontier(cell), map.is_free(cell)));
     black_box((map.is_known(cell), map.is_visited(cell)));

@@ -175,7 +175,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
             return Learnt::default();
         }
         self.position = sighting.centre();
-        self.map.visit(self.position);
+        self.map.stand(self.position);
         let learnt = self.map.observe(sighting);
         self.link.look(sighting);
         self.link.announce(&mut self.map);

@@ -100,7 +100,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         let TileRecord { at, tile } = self.state.here;
         self.map.join_tile(at, tile);
         let position = self.state.status.position;
-        if TileIndex::of(position).is_some_and(|(of, bit)| of == at && tile.visited & bit != 0) {
+        if TileIndex::of(position).is_some_and(|(of, bit)| of == at && tile.visited() & bit != 0) {
             self.map.stand(position);
         }
         let value = read(answer.reply);

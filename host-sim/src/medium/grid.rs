@@ -1,6 +1,6 @@
 //! Robots and worlds of cells, as the air sees them.
 
-use planner_core::map::Tile;
+use planner_core::map::{Level, Tile};
 use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Extent, RobotId, Status, sight};
@@ -113,12 +113,9 @@ pub(super) fn any_bits(extent: Extent, dice: &mut Dice) -> (TileIndex, u64) {
 fn any_tile(extent: Extent, dice: &mut Dice) -> TileRecord {
     let (at, known) = any_bits(extent, dice);
     let obstacle = known & dice.bits();
+    let visited = known & !obstacle & dice.bits();
     TileRecord {
         at,
-        tile: Tile {
-            known,
-            obstacle,
-            visited: known & !obstacle & dice.bits(),
-        },
+        tile: Tile::seen(known, obstacle).with(visited, Level::Visited),
     }
 }

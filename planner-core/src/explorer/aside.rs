@@ -190,7 +190,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
         if cells == 0 || self.all_closed || self.unseen == 0 {
             return cells;
         }
-        cells & !(map.tile(at).visited & map.frontier(at))
+        cells & !(map.tile(at).visited() & map.frontier(at))
     }
 
     /// What is to be done if of so many frontier cells none is left that is worth a look.
@@ -301,7 +301,7 @@ mod tests {
         let mut map = Map::<3, 3>::new(Extent::new(24, 24)).unwrap();
         let frontier = Cell::new(5, 5);
         map.observe(&crate::sight::Sighting::new(frontier));
-        map.visit(frontier);
+        map.stand(frontier);
         let (at, bit) = TileIndex::of(frontier).unwrap();
         let mut aside = Small::new();
         aside.show_nothing(frontier, Cell::new(6, 5));

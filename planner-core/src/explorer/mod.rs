@@ -91,6 +91,7 @@
 
 mod aside;
 mod decide;
+mod evidence;
 mod far;
 mod lean;
 mod others;
@@ -100,10 +101,12 @@ mod surroundings;
 mod wave;
 mod window;
 
+pub use evidence::{SensorModel, Votes};
 pub use others::MAX_OTHERS;
 
 use aside::Aside;
 use decide::Near;
+use evidence::Evidence;
 use far::{FarSearch, Outcome};
 use others::Others;
 use surroundings::Surroundings;
@@ -116,7 +119,7 @@ use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::role::{self, Role};
-use crate::sight::Sighting;
+use crate::sight::{MAX_RADIUS, Sighting};
 use crate::tile::{TileIndex, TileSet};
 use crate::zeroed::Maybe;
 
@@ -151,6 +154,8 @@ pub struct Config {
     /// Steps of the way that are remembered, 1 to 256: where they are used up, the robot
     /// searches for the rest. Small numbers are for tests.
     pub way: u16,
+    /// How far looks are believed.
+    pub sensor: SensorModel,
     /// How the radio is used.
     pub link: LinkConfig,
 }
@@ -169,6 +174,7 @@ impl Config {
             looks: 2,
             holds: 64,
             way: role::CAPACITY as u16,
+            sensor: SensorModel::truthful(),
             link: LinkConfig::new(),
         }
     }
@@ -192,6 +198,10 @@ impl Config {
     }
 }
 
+/// Ticks that a step waits where the last look saw something in its way: enough for looks
+/// that agree to turn a cell that was surely free into a wall.
+const MOST_VETOES: u8 = 8;
+
 /// The most looks in each of four directions that a byte counts.
 const MOST_LOOKS: u8 = 50;
 
@@ -206,6 +216,7 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     config: Config,
     id: RobotId,
     around: Surroundings<TW, TH>,
+    evidence: Evidence,
     role: Role,
     others: Others,
     link: Link<TH>,
@@ -225,6 +236,10 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     looks: u8,
     /// Steps that were held since the last one that was made.
     holds: u8,
+    /// Sides on which the last look saw the next cell blocked, a bit each.
+    obstructed: u8,
+    /// Ticks waited before such a step.
+    vetoes: u8,
     waiting: Maybe<Wait>,
     work: u32,
 }
@@ -245,6 +260,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 looks: 0,
                 holds: 0,
                 way: 0,
+                sensor: SensorModel::vacant(),
                 link: LinkConfig::vacant(),
             },
             id: RobotId(0),
@@ -254,6 +270,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 position: Cell::new(0, 0),
                 now: 0,
             },
+            evidence: Evidence::new(),
             role: Role::new(RobotId(0)),
             others: Others::new(),
             link: Link::vacant(),
@@ -266,6 +283,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             is_astray: false,
             looks: 0,
             holds: 0,
+            obstructed: 0,
+            vetoes: 0,
             waiting: Maybe::Nothing,
             work: 0,
         }
@@ -301,6 +320,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.around.aside.reset();
         self.around.position = start;
         self.around.now = 0;
+        self.evidence.reset();
         self.config = config;
         self.id = id;
         self.role = Role::new(id);
@@ -314,6 +334,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.is_astray = false;
         self.looks = 0;
         self.holds = 0;
+        self.obstructed = 0;
+        self.vetoes = 0;
         self.waiting = Maybe::Nothing;
         self.work = 0;
         Ok(())
@@ -326,16 +348,16 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.looks = 0;
             self.far_is_doubtful = true;
             self.around.aside.renew();
+            self.evidence.renew();
         }
     }
 
     /// As [`learn`](Self::learn), of what others told. Where they call the robot's own
-    /// place an obstacle, its place wins, and nothing was learnt by that.
+    /// place an obstacle, its place wins.
     fn learn_from_others(&mut self, mut learnt: Learnt) -> Learnt {
         let position = self.around.position;
         if self.around.map.extent().contains(position) && self.around.map.is_obstacle(position) {
-            self.around.map.stand(position);
-            learnt.closed = learnt.closed.saturating_sub(1);
+            learnt += self.around.map.stand(position);
         }
         self.learn(learnt);
         learnt
@@ -373,7 +395,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         }
         let sides = self.around.unknown_sides(here).count().max(1);
         let made = usize::from(self.looks);
-        if made < sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS)) {
+        let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
+        let may_decide = self.evidence.barren() <= self.config.sensor.barren_looks() + 1
+            && self.around.unknown_sides(here).any(is_doubtful);
+        let most = sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS));
+        if made < most || may_decide {
             self.looks = self.looks.saturating_add(1);
             return self.around.unknown_sides(here).nth(made % sides);
         }
@@ -393,6 +419,39 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.role.changes = 0;
         self.holds = 0;
         self.far.cancel();
+    }
+
+    /// Takes in a look from a cell of the grid.
+    fn look_around(&mut self, sighting: &Sighting) -> Learnt {
+        let centre = sighting.centre();
+        self.obstructed = Direction::ALL
+            .into_iter()
+            .filter(|side| sighting.is_blocked(centre.step(*side)))
+            .fold(0, |sides, side| sides | 1 << side as u8);
+        let idles = matches!(self.waiting.get(), Some(Wait::Look(_) | Wait::Obstructed));
+        let sensor = self.config.sensor;
+        let now = self.around.now;
+        let is_near = |body: &Cell| body.chebyshev(centre) <= u16::from(MAX_RADIUS);
+        let mut bodies = self.others.bodies(now).filter(is_near).peekable();
+        let map = &mut self.around.map;
+        if !sensor.sees_robots || bodies.peek().is_none() {
+            return self.evidence.observe(map, sighting, &sensor, idles);
+        }
+        let mut sighting = sighting.clone();
+        for body in bodies {
+            if sighting.is_blocked(body) {
+                sighting.forget(body);
+            }
+        }
+        self.evidence.observe(map, &sighting, &sensor, idles)
+    }
+
+    /// Whether the step leads to where the last look saw something: the robot looks again
+    /// before it tries.
+    fn vetoes(&mut self, step: Direction) -> bool {
+        let vetoes = self.obstructed >> step as u8 & 1 == 1 && self.vetoes < MOST_VETOES;
+        self.vetoes = if vetoes { self.vetoes + 1 } else { 0 };
+        vetoes
     }
 
     fn wait(&mut self, reason: Wait) -> Action {
@@ -429,14 +488,13 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.role.plan = None;
             self.looks = 0;
         }
-        let learnt = self.around.map.observe(sighting);
+        let learnt = self.look_around(sighting);
         if is_carried && learnt.anything() {
             // What it stopped for was true of another place.
             self.resume();
         }
         self.others.purse.saw(learnt.cells);
         self.link.look(sighting);
-        self.around.map.visit(self.around.position);
         self.link.announce(&mut self.around.map);
         self.learn(learnt);
         learnt
@@ -445,6 +503,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn tick(&mut self) -> Action {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
+        self.evidence.tick();
         self.work = 0;
         self.stepping = false;
         self.waiting = Maybe::Nothing;
@@ -474,6 +533,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         }
         if !self.has_plan() {
             self.lose_plan();
+        }
+        if self.around.is_goal(self.around.position) {
+            self.evidence.rest();
         }
         if let Some(direction) = self.look() {
             return self.wait(Wait::Look(direction));
@@ -509,6 +571,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             }
         }
         match self.next_step() {
+            Some(step) if self.vetoes(step) => self.wait(Wait::Obstructed),
             Some(step) => {
                 self.stepping = true;
                 Action::Move(step)

@@ -4,7 +4,7 @@
 use heapless::Vec;
 
 use super::purse::Purse;
-use crate::cell::Cell;
+use crate::cell::{Cell, Direction};
 use crate::list;
 use crate::map::Map;
 use crate::robot::{Activity, RobotId, Status};
@@ -25,6 +25,13 @@ impl Other {
     /// Whether the robot was heard just now.
     pub(crate) fn is_fresh(&self, now: u32) -> bool {
         now.saturating_sub(self.heard_at) <= 1
+    }
+
+    /// Where a sensor may have seen the robot a moment ago: on its cell, or a step away.
+    pub(crate) fn bodies(&self, now: u32) -> Option<[Cell; 5]> {
+        let [east, south, west, north] = Direction::ALL.map(|side| self.position.step(side));
+        let is_new = now.saturating_sub(self.heard_at) <= 2;
+        is_new.then_some([self.position, east, south, west, north])
     }
 
     /// Where the robot is and where it is going: frontiers beside either are its own.
@@ -102,6 +109,12 @@ impl Others {
     /// Those that still explore, by id; nobody while hints do not count.
     pub(crate) fn exploring(&self) -> impl Iterator<Item = &Other> {
         self.heard().filter(|_| !self.purse.is_empty())
+    }
+
+    /// Where robots may stand that were heard just now, stopped or not.
+    pub(crate) fn bodies(&self, now: u32) -> impl Iterator<Item = Cell> {
+        let bodies = self.list.iter().filter_map(move |other| other.bodies(now));
+        bodies.flatten()
     }
 
     /// Whether the robot knows where every other one went that it has heard of.

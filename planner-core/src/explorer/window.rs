@@ -30,6 +30,37 @@ pub(crate) struct Window {
 }
 
 impl Window {
+    /// Tiles that it is made of.
+    pub(crate) const TILES: usize = (TILES as usize) * (TILES as usize);
+
+    pub(crate) const fn new() -> Self {
+        Self { x: 0, y: 0 }
+    }
+
+    /// Whether it holds the tile in this column and row of tiles.
+    pub(crate) fn holds(self, (x, y): (i16, i16)) -> bool {
+        let side = 0..i32::from(TILES);
+        side.contains(&(i32::from(x) - i32::from(self.x)))
+            && side.contains(&(i32::from(y) - i32::from(self.y)))
+    }
+
+    /// A number below [`Self::TILES`], another one for each tile of a window, and the same
+    /// in all windows.
+    pub(crate) const fn slot((x, y): (i16, i16)) -> usize {
+        const SIDE: i16 = TILES as i16;
+        (x.rem_euclid(SIDE) + SIDE * y.rem_euclid(SIDE)) as usize
+    }
+
+    /// Its tiles, also those that no map has, each with its slot.
+    pub(crate) fn slots(self) -> impl Iterator<Item = ((i16, i16), usize)> {
+        (0..i16::from(TILES)).flat_map(move |dy| {
+            (0..i16::from(TILES)).map(move |dx| {
+                let at = (self.x + dx, self.y + dy);
+                (at, Self::slot(at))
+            })
+        })
+    }
+
     pub(crate) const fn around(cell: Cell) -> Self {
         Self {
             x: (cell.x.saturating_add(4) >> 3) - 2,
@@ -267,7 +298,7 @@ impl NearSearch {
 
     pub(crate) const fn new() -> Self {
         Self {
-            window: Window { x: 0, y: 0 },
+            window: Window::new(),
             rows: [Row::EMPTY; SIDE + 1],
         }
     }
@@ -288,7 +319,7 @@ impl NearSearch {
             row.frontier = frontier;
         }
         *work += 4 * SIDE as u32;
-        let visited = self.window.load(|at| around.map.tile(at).visited);
+        let visited = self.window.load(|at| around.map.tile(at).visited());
         Some(Bonus::of(visited))
     }
 

@@ -21,7 +21,7 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
                 // [Gauville2019 §3.2 step 3a]
                 self.trace.mark(self.position);
                 // [Gauville2019 §3.2 step 3b]
-                self.map.visit(self.position);
+                self.map.stand(self.position);
                 // [Gauville2019 §3.2 step 3c]
                 Action::Move(step)
             }

@@ -93,7 +93,7 @@ impl Window {
         let end = window.open.iter().rposition(|&row| row != 0);
         window.rows = end.map_or(0, |last| last + 1 - window.first);
         for (row, y) in window.numbered_rows() {
-            let obstacle = row_of(map, window.corner(0, y), |tile| tile.obstacle);
+            let obstacle = row_of(map, window.corner(0, y), Tile::obstacle);
             if let Some(open) = window.open.get_mut(row) {
                 *open &= !(obstacle as u32);
             }
@@ -121,7 +121,7 @@ impl Window {
     ) -> Rows {
         let mut frontiers = [0; SPAN];
         // Bit 0 is one column west of the window.
-        let unknown = |y| row_of(map, self.corner(-1, y), |tile| !tile.known);
+        let unknown = |y| row_of(map, self.corner(-1, y), |tile| !tile.known());
         let top = self.first as i16 - RADIUS;
         let (mut above, mut here) = (unknown(top - 1), unknown(top));
         for (row, y) in self.numbered_rows() {
@@ -243,7 +243,7 @@ impl Window {
         let mut rows = [0; SPAN + 2 * REACH];
         let used = rows.iter_mut().zip(-RADIUS - reach..);
         for (row, y) in used.skip(self.first).take(self.rows + 2 * REACH) {
-            *row = row_of(map, self.corner(-reach, y), |tile| tile.visited);
+            *row = row_of(map, self.corner(-reach, y), Tile::visited);
         }
         self.work += 2 * REACH as u32;
         self.count_rows();

@@ -9,7 +9,7 @@ mod tile;
 
 use core::fmt;
 
-pub use tile::Tile;
+pub use tile::{Level, Tile};
 
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::sight::Sighting;
@@ -24,12 +24,16 @@ pub struct Learnt {
     pub cells: u32,
     /// Cells that had been free and became obstacles.
     pub closed: u32,
+    /// Cells that had been obstacles and became free.
+    pub opened: u32,
+    /// Unknown cells that became doubtful.
+    pub doubtful: u32,
 }
 
 impl Learnt {
     /// Whether anything changed that a decision can depend on.
     pub const fn anything(self) -> bool {
-        self.cells > 0 || self.closed > 0
+        self.cells | self.closed | self.opened | self.doubtful > 0
     }
 }
 
@@ -37,6 +41,8 @@ impl core::ops::AddAssign for Learnt {
     fn add_assign(&mut self, other: Self) {
         self.cells += other.cells;
         self.closed += other.closed;
+        self.opened += other.opened;
+        self.doubtful += other.doubtful;
     }
 }
 
@@ -114,12 +120,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.edge = 0;
         self.changed.clear();
         for (at, tile) in every_tile(TW, TH).zip(self.tiles.values_mut()) {
-            let inside = at.inside(extent);
-            *tile = Tile {
-                known: !inside,
-                obstacle: !inside,
-                visited: 0,
-            };
+            *tile = Tile::seen(0, !at.inside(extent));
         }
         Ok(())
     }
@@ -179,13 +180,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// One tile without the cells beyond the extent, as robots tell each other.
     pub fn tile_inside(&self, at: TileIndex) -> Tile {
-        let inside = at.inside(self.extent);
-        let tile = self.tile(at);
-        Tile {
-            known: tile.known & inside,
-            obstacle: tile.obstacle & inside,
-            visited: tile.visited & inside,
-        }
+        self.tile(at).only(at.inside(self.extent))
     }
 
     fn bit(&self, cell: Cell, layer: impl Fn(Tile) -> u64) -> bool {
@@ -194,9 +189,16 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         })
     }
 
-    /// Whether anybody has seen the cell.
+    /// What is known of the cell; a wall outside.
+    pub fn level(&self, cell: Cell) -> Level {
+        TileIndex::of(cell).map_or(Level::Wall, |(at, bit)| {
+            self.tile(at).level(bit.trailing_zeros())
+        })
+    }
+
+    /// Whether the cell is known to be free or an obstacle.
     pub fn is_known(&self, cell: Cell) -> bool {
-        self.bit(cell, |tile| tile.known)
+        self.bit(cell, Tile::known)
     }
 
     /// Whether the cell is known and free.
@@ -206,12 +208,18 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
 
     /// Whether the cell is known to be an obstacle, or lies outside.
     pub fn is_obstacle(&self, cell: Cell) -> bool {
-        self.bit(cell, |tile| tile.obstacle)
+        self.bit(cell, Tile::obstacle)
     }
 
-    /// Whether anybody has stood on the cell.
+    /// Whether the cell was seen blocked, but not often enough to believe it: it is not
+    /// known, and no way leads over it.
+    pub fn is_doubtful(&self, cell: Cell) -> bool {
+        self.bit(cell, Tile::doubtful)
+    }
+
+    /// Whether anybody has stood on the cell, or it was refuted as a wall.
     pub fn is_visited(&self, cell: Cell) -> bool {
-        self.bit(cell, |tile| tile.visited)
+        self.bit(cell, Tile::visited)
     }
 
     /// Whether the cell is a frontier. Reads five tiles.
@@ -228,68 +236,47 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     }
 
     fn frontier_by_neighbours(&self, at: TileIndex) -> u64 {
-        let unknown = |at| self.tiles.get(at).map_or(0, |tile| !tile.known);
+        let unknown = |at| self.tiles.get(at).map_or(0, |tile| !tile.known());
         self.free(at) & neighbours(at, unknown)
     }
 
-    /// Marks a cell as stood upon; ignored outside.
-    pub fn visit(&mut self, cell: Cell) {
-        if let Some((at, bit)) = TileIndex::of(cell)
-            && self.extent.contains(cell)
-        {
-            let visited = Tile {
-                visited: bit,
-                ..Tile::UNKNOWN
-            };
-            self.join_tile(at, visited);
-        }
-    }
-
-    /// The cell that the robot stands on is free, whatever the map says of it: its own
-    /// place is surer than any look. Ignored outside. Work: the tile and its four
-    /// neighbours, or one look at the map where it agrees.
-    pub fn stand(&mut self, cell: Cell) {
-        if let Some((at, bit)) = TileIndex::of(cell)
-            && self.extent.contains(cell)
-            && let Some(tile) = self.tiles.get_mut(at)
-            && tile.obstacle & bit != 0
-        {
-            tile.obstacle &= !bit;
-            tile.visited |= bit;
-            self.changed.insert(at);
-            self.edge += (bit & at.edge(self.extent)).count_ones();
-            self.recount(at);
-        }
-    }
-
-    /// Takes in what was seen; nothing where the robot stood outside of the extent, for
-    /// its pose was wrong then. The robot's own cell is free, also if the map calls it
-    /// an obstacle. Work: at most 25 tiles, each with its four neighbours.
-    pub fn observe(&mut self, sighting: &Sighting) -> Learnt {
-        let mut learnt = Learnt::default();
-        if !self.extent.contains(sighting.centre()) {
-            return learnt;
-        }
-        self.stand(sighting.centre());
-        let (corner, span) = sighting.tile_block();
-        for dy in 0..span {
-            for dx in 0..span {
-                let (x, y) = (corner.0 + i16::from(dx), corner.1 + i16::from(dy));
-                if let (Ok(x), Ok(y)) = (u8::try_from(x), u8::try_from(y)) {
-                    let at = TileIndex { x, y };
-                    let (free, blocked) = sighting.tile(at);
-                    if free | blocked != 0 {
-                        learnt += self.join_tile(
-                            at,
-                            Tile {
-                                known: free | blocked,
-                                obstacle: blocked,
-                                visited: 0,
-                            },
-                        );
+    /// A robot stands on the cell: it is free, whatever the map says of it, for its own
+    /// place is surer than any look. Ignored outside. Work: one tile, and its four
+    /// neighbours where the map did not agree.
+    pub fn stand(&mut self, cell: Cell) -> Learnt {
+        match TileIndex::of(cell) {
+            Some((at, bit)) if self.extent.contains(cell) => {
+                let tile = self.tile(at);
+                let level = match tile.level(bit.trailing_zeros()) {
+                    Level::Unknown | Level::Doubtful | Level::Free | Level::Visited => {
+                        Level::Visited
                     }
-                }
+                    Level::Wall | Level::FreeAgain => Level::FreeAgain,
+                    Level::WallAgain | Level::FreeForGood => Level::FreeForGood,
+                };
+                self.join_tile(at, Tile::UNKNOWN.with(bit, level))
             }
+            _ => Learnt::default(),
+        }
+    }
+
+    /// Takes in what was seen, at its word: the first look decides, and what was ever seen
+    /// blocked is an obstacle until somebody stands on it. An
+    /// [`Explorer`](crate::explorer::Explorer) weighs looks instead. Nothing is taken in where the robot stood outside of the
+    /// extent, for its pose was wrong then. The robot's own cell is free, also if the map
+    /// calls it an obstacle. Work: at most 25 tiles, each with its four neighbours.
+    pub fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        let centre = sighting.centre();
+        if !self.extent.contains(centre) {
+            return Learnt::default();
+        }
+        let mut learnt = Learnt::default();
+        if self.is_obstacle(centre) {
+            learnt += self.stand(centre);
+        }
+        for at in sighting.tiles() {
+            let (free, blocked) = sighting.tile(at);
+            learnt += self.join_tile(at, Tile::seen(free, blocked));
         }
         learnt
     }
@@ -302,18 +289,19 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             return Learnt::default();
         };
         let before = *tile;
-        let mut after = before.joined(other);
-        after.visited &= inside;
+        let after = before.joined(other.only(inside));
         if after == before {
             return Learnt::default();
         }
         *tile = after;
         self.changed.insert(at);
         let learnt = Learnt {
-            cells: (after.known & !before.known).count_ones(),
-            closed: (after.obstacle & before.free()).count_ones(),
+            cells: (after.known() & !before.known()).count_ones(),
+            closed: (after.obstacle() & before.free()).count_ones(),
+            opened: (after.free() & before.obstacle()).count_ones(),
+            doubtful: (after.doubtful() & !before.doubtful()).count_ones(),
         };
-        if learnt.anything() {
+        if learnt.cells | learnt.closed | learnt.opened > 0 {
             self.unknown -= learnt.cells;
             let edge = at.edge(self.extent);
             self.edge += (after.free() & edge).count_ones();
@@ -321,7 +309,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             self.recount(at);
             if learnt.cells > 0 {
                 for direction in Direction::ALL {
-                    if carried(after.known & !before.known, direction) != 0
+                    if carried(after.known() & !before.known(), direction) != 0
                         && let Some(next) = at.neighbour(direction)
                     {
                         self.recount(next);
@@ -369,7 +357,8 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     }
 }
 
-/// The map as text: `#` obstacle, `.` free, `+` visited, `?` frontier, space unknown.
+/// The map as text: `#` obstacle, `.` free, `+` visited, `?` frontier, `!` doubtful, space
+/// unknown.
 impl<const TW: usize, const TH: usize> fmt::Debug for Map<TW, TH> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
@@ -380,7 +369,9 @@ impl<const TW: usize, const TH: usize> fmt::Debug for Map<TW, TH> {
         for y in 0..self.extent.height as i16 {
             for x in 0..self.extent.width as i16 {
                 let cell = Cell::new(x, y);
-                let sign = if !self.is_known(cell) {
+                let sign = if self.is_doubtful(cell) {
+                    '!'
+                } else if !self.is_known(cell) {
                     ' '
                 } else if self.is_obstacle(cell) {
                     '#'

@@ -12,11 +12,14 @@ const EXTENT: Extent = Extent::new(29, 19);
 
 /// The obviously correct map.
 #[derive(Clone, PartialEq, Debug)]
-struct Naive {
-    known: Vec<bool>,
-    obstacle: Vec<bool>,
-    visited: Vec<bool>,
-}
+struct Naive(Vec<Level>);
+
+const FREE: [Level; 4] = [
+    Level::Free,
+    Level::Visited,
+    Level::FreeAgain,
+    Level::FreeForGood,
+];
 
 fn all_cells() -> impl Iterator<Item = Cell> {
     (0..EXTENT.height as i16).flat_map(|y| (0..EXTENT.width as i16).map(move |x| Cell::new(x, y)))
@@ -28,51 +31,61 @@ fn index(cell: Cell) -> usize {
 
 impl Naive {
     fn new() -> Self {
-        let nothing = vec![false; EXTENT.cells() as usize];
-        Self {
-            known: nothing.clone(),
-            obstacle: nothing.clone(),
-            visited: nothing,
-        }
+        Self(vec![Level::Unknown; EXTENT.cells() as usize])
+    }
+
+    fn level(&self, cell: Cell) -> Level {
+        self.0[index(cell)]
+    }
+
+    fn raise(&mut self, cell: Cell, level: Level) {
+        let own = &mut self.0[index(cell)];
+        *own = level.max(*own);
+    }
+
+    fn is_known(&self, cell: Cell) -> bool {
+        self.level(cell) >= Level::Free
+    }
+
+    fn is_free(&self, cell: Cell) -> bool {
+        FREE.contains(&self.level(cell))
     }
 
     fn is_frontier(&self, cell: Cell) -> bool {
-        self.known[index(cell)]
-            && !self.obstacle[index(cell)]
+        self.is_free(cell)
             && Direction::ALL.into_iter().any(|direction| {
                 let next = cell.step(direction);
-                EXTENT.contains(next) && !self.known[index(next)]
+                EXTENT.contains(next) && !self.is_known(next)
             })
     }
 }
 
 fn assert_same(map: &Small, naive: &Naive) {
     for cell in all_cells() {
-        assert_eq!(map.is_known(cell), naive.known[index(cell)], "{cell}");
-        assert_eq!(map.is_obstacle(cell), naive.obstacle[index(cell)], "{cell}");
-        assert_eq!(map.is_visited(cell), naive.visited[index(cell)], "{cell}");
+        let (known, free) = (naive.is_known(cell), naive.is_free(cell));
+        let level = naive.level(cell);
+        assert_eq!(map.level(cell), level, "{cell}");
+        assert_eq!(map.is_known(cell), known, "{cell}");
+        assert_eq!(map.is_free(cell), free, "{cell}");
+        assert_eq!(map.is_obstacle(cell), known && !free, "{cell}");
+        assert_eq!(map.is_doubtful(cell), level == Level::Doubtful, "{cell}");
+        assert_eq!(map.is_visited(cell), free && level != Level::Free, "{cell}");
         assert_eq!(map.is_frontier(cell), naive.is_frontier(cell), "{cell}");
     }
-    let frontiers = all_cells().filter(|&cell| naive.is_frontier(cell)).count();
-    assert_eq!(map.frontiers() as usize, frontiers);
-    let unknown = naive.known.iter().filter(|&&known| !known).count();
-    assert_eq!(map.unknown_cells() as usize, unknown);
+    let count = |is: &dyn Fn(&Cell) -> bool| all_cells().filter(|cell| is(cell)).count() as u32;
+    assert_eq!(map.frontiers(), count(&|&cell| naive.is_frontier(cell)));
+    assert_eq!(map.unknown_cells(), count(&|&cell| !naive.is_known(cell)));
     let (east, south) = (EXTENT.width as i16 - 1, EXTENT.height as i16 - 1);
-    let edge = all_cells().filter(|cell| {
-        let is_free = naive.known[index(*cell)] && !naive.obstacle[index(*cell)];
-        is_free && (cell.x == 0 || cell.y == 0 || cell.x == east || cell.y == south)
+    let edge = count(&|cell| {
+        naive.is_free(*cell) && (cell.x == 0 || cell.y == 0 || cell.x == east || cell.y == south)
     });
-    assert_eq!(map.free_edge_cells() as usize, edge.count());
+    assert_eq!(map.free_edge_cells(), edge);
 }
 
-/// Tiles as frames may carry them: not only valid ones.
+/// Any levels.
 fn tile() -> impl Strategy<Value = Tile> {
-    let layer = || prop_oneof![any::<u64>(), any::<(u64, u64)>().prop_map(|(a, b)| a & b)];
-    (layer(), layer(), layer()).prop_map(|(known, obstacle, visited)| Tile {
-        known,
-        obstacle,
-        visited,
-    })
+    let plane = || prop_oneof![any::<u64>(), any::<(u64, u64)>().prop_map(|(a, b)| a & b)];
+    [plane(), plane(), plane()].prop_map(Tile::from_planes)
 }
 
 fn tiles() -> impl Strategy<Value = Vec<(TileIndex, Tile)>> {
@@ -95,6 +108,62 @@ fn joined(mut a: Small, b: &Small) -> Small {
     a
 }
 
+#[test]
+fn a_tile_is_its_levels() {
+    let mut tile = Tile::UNKNOWN;
+    for (bit, level) in (0..).zip(Level::ALL) {
+        assert_eq!(level as u32, bit);
+        tile = tile.with(1 << (5 * bit), level);
+    }
+    for (bit, level) in (0..).zip(Level::ALL) {
+        assert_eq!(tile.level(5 * bit), level);
+        let others = if level == Level::Unknown {
+            !tile.known() & !tile.doubtful()
+        } else {
+            1 << (5 * bit)
+        };
+        assert_eq!(tile.at(level), others, "{level:?}");
+    }
+    assert_eq!(tile.free() & (tile.obstacle() | tile.doubtful()), 0);
+    assert_eq!(tile.free() | tile.obstacle(), tile.known());
+    assert_eq!(
+        Tile::seen(0b110, 0b010),
+        Tile::UNKNOWN
+            .with(0b100, Level::Free)
+            .with(0b010, Level::Wall)
+    );
+}
+
+#[test]
+fn where_a_robot_stands_is_free_twice_over() {
+    let (at, bit) = TileIndex::of(Cell::new(9, 9)).unwrap();
+    let mut map = Small::new(EXTENT).unwrap();
+    let mut levels = Vec::new();
+    for _ in 0..3 {
+        map.stand(Cell::new(9, 9));
+        levels.push(map.level(Cell::new(9, 9)));
+        for wall in [Level::Wall, Level::WallAgain] {
+            map.join_tile(at, Tile::UNKNOWN.with(bit, wall));
+            levels.push(map.level(Cell::new(9, 9)));
+        }
+        map.stand(Cell::new(9, 9));
+    }
+    assert_eq!(
+        levels,
+        [
+            Level::Visited,
+            Level::Wall,
+            Level::WallAgain,
+            Level::FreeForGood,
+            Level::FreeForGood,
+            Level::FreeForGood,
+            Level::FreeForGood,
+            Level::FreeForGood,
+            Level::FreeForGood,
+        ]
+    );
+}
+
 proptest! {
     #[test]
     fn tiles_join_as_the_naive_map_does(tiles in tiles()) {
@@ -106,20 +175,21 @@ proptest! {
             for bit in 0..64 {
                 let cell = at.cell(bit);
                 if EXTENT.contains(cell) && at.x < 4 && at.y < 3 {
-                    let i = index(cell);
-                    let known = tile.known >> bit & 1 == 1;
-                    let obstacle = tile.obstacle >> bit & 1 == 1;
-                    let visited = tile.visited >> bit & 1 == 1;
-                    naive.known[i] |= known | obstacle | visited;
-                    naive.obstacle[i] |= obstacle;
-                    naive.visited[i] = (naive.visited[i] | visited) & !naive.obstacle[i];
+                    naive.raise(cell, tile.level(bit));
                 }
             }
-            let cells = (0..naive.known.len()).filter(|&i| naive.known[i] && !before.known[i]);
-            prop_assert_eq!(learnt.cells as usize, cells.count());
-            let closed = (0..naive.known.len())
-                .filter(|&i| naive.obstacle[i] && before.known[i] && !before.obstacle[i]);
-            prop_assert_eq!(learnt.closed as usize, closed.count());
+            let count = |of: &dyn Fn(Cell) -> bool| all_cells().filter(|&cell| of(cell)).count();
+            let cells = count(&|cell| naive.is_known(cell) && !before.is_known(cell));
+            prop_assert_eq!(learnt.cells as usize, cells);
+            let is_wall = |naive: &Naive, cell| naive.is_known(cell) && !naive.is_free(cell);
+            let closed = count(&|cell| is_wall(&naive, cell) && before.is_free(cell));
+            prop_assert_eq!(learnt.closed as usize, closed);
+            let opened = count(&|cell| naive.is_free(cell) && is_wall(&before, cell));
+            prop_assert_eq!(learnt.opened as usize, opened);
+            let doubtful = count(&|cell| {
+                naive.level(cell) == Level::Doubtful && before.level(cell) == Level::Unknown
+            });
+            prop_assert_eq!(learnt.doubtful as usize, doubtful);
         }
         assert_same(&map, &naive);
     }
@@ -162,15 +232,14 @@ proptest! {
             let sighting = look(Cell::new(x, y), radius, blocked);
             map.observe(&sighting);
             // A robot that stands in a wall is right, and the wall is wrong.
-            let own = index(sighting.centre());
-            naive.visited[own] |= naive.obstacle[own];
-            naive.obstacle[own] = false;
+            if naive.level(sighting.centre()) == Level::Wall {
+                naive.raise(sighting.centre(), Level::FreeAgain);
+            }
             for cell in sighting.free_cells() {
-                naive.known[index(cell)] = true;
+                naive.raise(cell, Level::Free);
             }
             for cell in sighting.blocked_cells().filter(|&cell| EXTENT.contains(cell)) {
-                naive.known[index(cell)] = true;
-                naive.obstacle[index(cell)] = true;
+                naive.raise(cell, Level::Wall);
             }
         }
         assert_same(&map, &naive);
@@ -206,7 +275,7 @@ fn debug_draws_the_map() {
     let mut map = Map::<1, 1>::new(Extent::new(5, 3)).unwrap();
     let walls = |cell: Cell| !Extent::new(5, 3).contains(cell) || cell == Cell::new(1, 0);
     map.observe(&look(Cell::new(1, 1), 2, walls));
-    map.visit(Cell::new(1, 1));
+    map.stand(Cell::new(1, 1));
     assert_eq!(
         format!("{map:?}"),
         "5×3 cells, 5 unknown, 3 frontiers\n.#?  \n.+.? \n..?  \n"

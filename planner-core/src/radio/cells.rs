@@ -9,7 +9,7 @@ use super::envelope::{
 use super::error::{Field, FrameError};
 use super::key::Key;
 use crate::cell::Extent;
-use crate::map::Tile;
+use crate::map::{Level, Tile};
 use crate::robot::{Activity, RobotId, Status};
 use crate::tile::{TILE, TileIndex};
 
@@ -21,13 +21,16 @@ const OCCUPANCY: u8 = 1;
 
 /// Bytes between the header and the tiles.
 const STATUS: usize = 7;
-/// Bytes of a tile: column, row, two bits a cell.
+/// Bytes of a record: column and form, row, two bits a cell.
 const RECORD: usize = 18;
 
 const _: () = assert!(HEADER + STATUS + MAX_TILES * RECORD + TAG <= MAX_LEN);
 const _: () = assert!(HEADER + STATUS + MAX_TILES * RECORD + CRC <= MAX_LEN);
 
-/// A tile of a map and where it is.
+/// A tile of a map, or a part of what is known of it, and where it is. A record is a lower
+/// bound: it joins into a map. It is written in one of three forms, in each of which a
+/// cell can have three levels: free, visited, wall; doubtful, free again, wall again; free
+/// for good.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -74,8 +77,9 @@ impl Frame {
         writer.put(&packed(self.status.position));
         writer.put(&self.status.goal.map_or([0; 3], packed));
         for record in &self.tiles {
-            writer.put(&[record.at.x, record.at.y]);
-            writer.put(&cell_codes(record.tile).to_le_bytes());
+            let form = form_of(record.tile);
+            writer.put(&[record.at.x | form << FORM, record.at.y]);
+            writer.put(&cell_codes(record.tile, form).to_le_bytes());
         }
         writer.finish(key)
     }
@@ -113,12 +117,14 @@ impl Frame {
         let goal = optional_cell([q0, q1, q2], state & 4 != 0, extent)?;
         let mut tiles = Vec::new();
         for &[x, y, ref codes @ ..] in records {
+            let (x, form) = (x & ((1 << FORM) - 1), x >> FORM);
             let record = TileRecord {
                 at: TileIndex { x, y },
-                tile: tile_of(u128::from_le_bytes(*codes)),
+                tile: tile_of(u128::from_le_bytes(*codes), form),
             };
             let inside = record.at.inside(extent);
-            if record.tile.known & !inside != 0 || inside == 0 {
+            let is_inside = inside != 0 && record.tile.only(inside) == record.tile;
+            if !is_inside || form_of(record.tile) != form {
                 return Err(FrameError::Field(Field::Tile));
             }
             // There is room: the length was checked.
@@ -138,21 +144,64 @@ impl Frame {
     }
 }
 
-/// Two bits a cell, cell 0 in the lowest: 0 unknown, 1 free, 2 visited, 3 obstacle.
-fn cell_codes(tile: Tile) -> u128 {
-    let obstacle = tile.obstacle & tile.known;
-    let visited = tile.visited & !obstacle;
-    let low = obstacle | tile.known & !visited;
-    let high = obstacle | visited;
-    spaced(low) | spaced(high) << 1
+/// What goes out of a tile that is not usual: as far as each of the forms can say it.
+/// Robots that hear them in any order know the same, and never less than before.
+pub(super) fn parts(tile: Tile) -> [Tile; 3] {
+    let usual = Tile::seen(tile.free(), tile.obstacle()).with(tile.visited(), Level::Visited);
+    let for_good = tile.at(Level::FreeForGood);
+    let rare = Tile::UNKNOWN
+        .with(tile.doubtful(), Level::Doubtful)
+        .with(tile.at(Level::FreeAgain) | for_good, Level::FreeAgain)
+        .with(tile.at(Level::WallAgain), Level::WallAgain);
+    let last = Tile::UNKNOWN.with(for_good, Level::FreeForGood);
+    [usual, rare, last]
 }
 
-fn tile_of(codes: u128) -> Tile {
+/// Whether a tile has cells that the first form cannot tell exactly, but for doubts.
+pub(super) fn is_rare(tile: Tile) -> bool {
+    let [low, mid, high] = tile.planes();
+    high & (low | mid) != 0
+}
+
+/// The bit of the column byte from which on the form of the record stands.
+const FORM: u32 = 6;
+const _: () = assert!(crate::tile::MOST_TILES <= 1 << FORM);
+
+/// The levels that the codes 1, 2 and 3 mean in each form.
+const FORMS: [[Level; 3]; 3] = [
+    [Level::Free, Level::Visited, Level::Wall],
+    [Level::Doubtful, Level::FreeAgain, Level::WallAgain],
+    [Level::FreeForGood; 3],
+];
+
+/// The first form that has something to say of a tile; the first of all of an unknown one.
+fn form_of(tile: Tile) -> u8 {
+    let says = |form: &[Level; 3]| form.iter().any(|&level| tile.at(level) != 0);
+    FORMS.iter().position(says).unwrap_or(0) as u8
+}
+
+/// Two bits a cell, cell 0 in the lowest.
+fn cell_codes(tile: Tile, form: u8) -> u128 {
+    let Some(&[first, second, third]) = FORMS.get(usize::from(form)) else {
+        return 0;
+    };
+    if form == 2 {
+        return spaced(tile.at(first));
+    }
+    let third = tile.at(third);
+    spaced(tile.at(first) | third) | spaced(tile.at(second) | third) << 1
+}
+
+/// The tile that codes mean; unknown where a form has no such code.
+fn tile_of(codes: u128, form: u8) -> Tile {
     let (low, high) = (gathered(codes), gathered(codes >> 1));
-    Tile {
-        known: low | high,
-        obstacle: low & high,
-        visited: high & !low,
+    match FORMS.get(usize::from(form)) {
+        Some(_) if form == 2 && high != 0 => Tile::UNKNOWN,
+        Some(&[first, second, third]) => Tile::UNKNOWN
+            .with(low & !high, first)
+            .with(high & !low, second)
+            .with(low & high, third),
+        None => Tile::UNKNOWN,
     }
 }
 

@@ -6,7 +6,7 @@ use super::check::GridId;
 use crate::robot::RobotId;
 
 /// The format that this code writes, and the only one that it reads.
-pub(super) const VERSION: u8 = 1;
+pub(super) const VERSION: u8 = 2;
 
 /// A field of a frame that holds what it cannot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -93,9 +93,9 @@ impl Witness {
         map: &Map<TW, TH>,
     ) {
         let TileRecord { at, tile } = *record;
-        let mut wrong = tile.obstacle & map.tile(at).visited;
+        let mut wrong = tile.obstacle() & map.tile(at).visited();
         if at == self.at {
-            wrong |= tile.obstacle & self.free | tile.free() & self.blocked;
+            wrong |= tile.obstacle() & self.free | tile.free() & self.blocked;
         }
         let wrong = wrong.count_ones() as u16;
         if wrong == 0 {

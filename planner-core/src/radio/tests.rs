@@ -46,12 +46,12 @@ impl Station {
     }
 }
 
+/// Anything but doubts, which a robot tells of only where it tells of the tile's rare levels.
 fn tile() -> impl Strategy<Value = Tile> {
-    any::<(u64, u64, u64)>().prop_map(|(known, obstacle, visited)| Tile {
-        known,
-        obstacle: obstacle & known,
-        visited: visited & known & !obstacle,
-    })
+    let any_level = any::<[u64; 3]>().prop_map(Tile::from_planes);
+    let usual = any::<(u64, u64)>().prop_map(|(free, wall)| Tile::seen(free, wall));
+    prop_oneof![any_level, usual]
+        .prop_map(|tile| tile.with(tile.doubtful(), crate::map::Level::Unknown))
 }
 
 fn map() -> impl Strategy<Value = Small> {
@@ -135,7 +135,7 @@ proptest! {
         let mut sender = Station::new(1, told.clone());
         let mut receiver = Station::new(0, own.clone());
         let whole = joined(&own, &told);
-        for _ in 0..60 {
+        for _ in 0..600 {
             receiver.hear(&sender.frame());
             receiver.map.take_changed();
             prop_assert!(joined(&whole, &receiver.map) == whole);
@@ -157,11 +157,12 @@ proptest! {
         a.map.take_changed();
         b.map.take_changed();
         let ticks = ticks_to_agree(&mut a, &mut b, loss, seed);
-        // 42 tiles, two a frame: 21 ticks without loss; with it, a last tile of 84
-        // that is missed again and again.
-        prop_assert!(ticks.is_some_and(|ticks| ticks < 21 * 300), "{:?}", ticks);
+        // 42 tiles, two a frame, or one whose rare levels need a second record: 42 ticks
+        // without loss, and more until the last part of each was told; with it, a last
+        // tile of 84 that is missed again and again.
+        prop_assert!(ticks.is_some_and(|ticks| ticks < 42 * 300), "{:?}", ticks);
         if loss == 0 {
-            prop_assert!(ticks.is_some_and(|ticks| ticks < 50));
+            prop_assert!(ticks.is_some_and(|ticks| ticks < 400), "{:?}", ticks);
         }
     }
 }

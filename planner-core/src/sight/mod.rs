@@ -91,6 +91,16 @@ impl Sighting {
         }
     }
 
+    /// Says nothing of a cell any more.
+    pub(crate) fn forget(&mut self, cell: Cell) {
+        if let Some((row, bit)) = self.place(cell)
+            && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get_mut(row))
+        {
+            *free &= !bit;
+            *blocked &= !bit;
+        }
+    }
+
     /// Whether the cell was seen free.
     pub fn is_free(&self, cell: Cell) -> bool {
         self.has(cell, &self.free)
@@ -150,7 +160,7 @@ impl Sighting {
 
     /// The block of tiles that holds all cells seen: its corner in tiles, and its side,
     /// at most five.
-    pub(crate) fn tile_block(&self) -> ((i16, i16), u8) {
+    fn tile_block(&self) -> ((i16, i16), u8) {
         // The robot's own cell is among them.
         let (mut columns, mut rows) = (1u32 << MAX_RADIUS, 1u32 << MAX_RADIUS);
         for (row, (free, blocked)) in self.free.iter().zip(&self.blocked).enumerate() {
@@ -167,6 +177,18 @@ impl Sighting {
         ((west, north), side as u8)
     }
 
+    /// The tiles that hold cells seen, at most 25.
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = TileIndex> + use<> {
+        let (corner, span) = self.tile_block();
+        (0..span).flat_map(move |dy| {
+            (0..span).filter_map(move |dx| {
+                let x = u8::try_from(corner.0 + i16::from(dx)).ok()?;
+                let y = u8::try_from(corner.1 + i16::from(dy)).ok()?;
+                Some(TileIndex { x, y })
+            })
+        })
+    }
+
     /// The cells of one tile seen free and seen blocked. Work: twice eight rows.
     pub(crate) fn tile(&self, at: TileIndex) -> (u64, u64) {
         (
@@ -176,7 +198,6 @@ impl Sighting {
     }
 
     /// The firm cells of one tile. Work: eight rows.
-    #[allow(dead_code)]
     pub(crate) fn firm_tile(&self, at: TileIndex) -> u64 {
         self.in_tile(at, &self.firm)
     }

@@ -96,13 +96,15 @@ fn enter(bench: &mut Bench, place: Place, extent: Extent, others: u8) {
     let (columns, rows) = map.tile_extent();
     for (x, y) in (0..columns).flat_map(|x| (0..rows).map(move |y| (x, y))) {
         let at = TileIndex::new(x, y);
-        let mut tile = Tile::UNKNOWN;
+        let (mut free, mut blocked) = (0, 0);
         for bit in 0..64 {
-            let kind = place.kind(at.cell(bit));
-            tile.known |= u64::from(kind != Kind::Unknown) << bit;
-            tile.obstacle |= u64::from(kind == Kind::Blocked) << bit;
+            match place.kind(at.cell(bit)) {
+                Kind::Unknown => {}
+                Kind::Blocked => blocked |= 1 << bit,
+                _ => free |= 1 << bit,
+            }
         }
-        map.join_tile(at, tile);
+        map.join_tile(at, Tile::seen(free, blocked));
     }
     let changed = map.take_changed();
     robot.join(map, &changed);
@@ -136,12 +138,7 @@ fn decide(
             // Something was in the unknown cell.
             for loose in LOOSE.into_iter().filter(|cell| cell.chebyshev(goal) <= 1) {
                 if let Some((at, bit)) = TileIndex::of(loose) {
-                    let tile = Tile {
-                        known: bit,
-                        obstacle: bit,
-                        ..Tile::UNKNOWN
-                    };
-                    map.join_tile(at, tile);
+                    map.join_tile(at, Tile::seen(0, bit));
                 }
             }
             let changed = map.take_changed();

@@ -89,7 +89,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Bmilrv<TW, TH> {
         let mut board = self.marks.lock();
         board.observe(sighting);
         self.robot.look(&mut board, sighting);
-        self.map.visit(sighting.centre());
+        self.map.stand(sighting.centre());
         let learnt = self.map.observe(sighting);
         self.link.announce(&mut self.map);
         learnt

@@ -27,7 +27,7 @@ fn scene() -> impl Strategy<Value = (Map<3, 3>, View, Cell, u8)> {
             view = View::of(&sighting);
         }
         for (x, y) in visits {
-            map.visit(Cell::new(x, y));
+            map.stand(Cell::new(x, y));
         }
         (map, view, own, radius)
     })

@@ -27,18 +27,11 @@ fn quiet() -> Frame {
 fn full() -> Frame {
     let mixed = TileRecord {
         at: TileIndex::new(2, 1),
-        tile: Tile {
-            known: 7 | 1 << 63,
-            obstacle: 4 | 1 << 63,
-            visited: 2,
-        },
+        tile: Tile::seen(1, 4 | 1 << 63).with(2, Level::Visited),
     };
     let free = TileRecord {
         at: TileIndex::new(0, 3),
-        tile: Tile {
-            known: u64::MAX,
-            ..Tile::UNKNOWN
-        },
+        tile: Tile::seen(u64::MAX, 0),
     };
     Frame {
         status: Status {
@@ -54,23 +47,23 @@ fn full() -> Frame {
 #[rustfmt::skip]
 const QUIET: [u8; 16] = [
     // version, kind, grid, sender, sequence, state
-    0x01, 0x01, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x02,
+    0x02, 0x01, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x02,
     // position, goal
     0x2c, 0x11, 0x01, 0x00, 0x00, 0x00,
     // CRC
-    0x72, 0xae,
+    0x4c, 0x2d,
 ];
 
 #[rustfmt::skip]
 const FULL: [u8; 52] = [
-    0x01, 0x01, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x04,
+    0x02, 0x01, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x04,
     0x14, 0x90, 0x00, 0xff, 0xe1, 0x1f,
     // free, visited, obstacle, unknown … obstacle
     0x02, 0x01, 0x39, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xc0,
     // free throughout
     0x00, 0x03, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55,
     0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55,
-    0xd5, 0x70,
+    0x3b, 0xc4,
 ];
 
 fn decoded(bytes: &[u8]) -> Result<Frame, FrameError> {
@@ -98,18 +91,12 @@ fn altered(at: usize, byte: u8) -> Vec<u8> {
 fn record(extent: Extent) -> impl Strategy<Value = TileRecord> {
     let columns = extent.width.div_ceil(8) as u8;
     let rows = extent.height.div_ceil(8) as u8;
-    let layers = (any::<u64>(), any::<u64>(), any::<u64>());
-    (0..columns, 0..rows, layers).prop_map(move |(x, y, (known, obstacle, visited))| {
+    (0..columns, 0..rows, any::<[u64; 3]>(), 0..3usize).prop_map(move |(x, y, planes, form)| {
         let at = TileIndex::new(x, y);
-        let known = known & at.inside(extent);
-        let obstacle = obstacle & known;
+        let tile = Tile::from_planes(planes).only(at.inside(extent));
         TileRecord {
             at,
-            tile: Tile {
-                known,
-                obstacle,
-                visited: visited & known & !obstacle,
-            },
+            tile: parts(tile)[form],
         }
     })
 }
@@ -164,7 +151,7 @@ fn the_bytes_are_as_documented_in_both_directions() {
 #[test]
 fn each_field_is_looked_at() {
     let field = |field| Err(FrameError::Field(field));
-    assert_eq!(decoded(&altered(0, 2)), Err(FrameError::Version(2)));
+    assert_eq!(decoded(&altered(0, 1)), Err(FrameError::Version(1)));
     assert_eq!(decoded(&altered(1, 3)), Err(FrameError::Kind(3)));
     let other = GridId(0xcaff);
     assert_eq!(
@@ -178,7 +165,7 @@ fn each_field_is_looked_at() {
     // A goal where there is none.
     assert_eq!(decoded(&altered(7, 0)), field(Field::Goal));
     // A tile outside of the grid, and one of which row 7 is.
-    assert_eq!(decoded(&altered(14, 64)), field(Field::Tile));
+    assert_eq!(decoded(&altered(14, 192)), field(Field::Tile));
     assert_eq!(decoded(&altered(15, 63)), field(Field::Tile));
     let mut bytes = FULL;
     bytes[20] ^= 1;
@@ -194,6 +181,50 @@ fn each_field_is_looked_at() {
     ] {
         assert!(std::format!("{error}").contains("frame"));
     }
+}
+
+/// Each of the three forms of a record, and what none of them says.
+#[test]
+fn rare_levels_have_forms_of_their_own() {
+    let levels = Level::ALL.into_iter().zip(0..);
+    let tile = levels.fold(Tile::UNKNOWN, |tile, (level, bit)| {
+        tile.with(1 << bit, level)
+    });
+    let written = |form: usize| {
+        let tiles = [TileRecord {
+            at: TileIndex::new(2, 1),
+            tile: parts(tile)[form],
+        }];
+        let frame = Frame {
+            tiles: heapless::Vec::from_slice(&tiles).unwrap(),
+            ..quiet()
+        };
+        encoded(&frame, None)[14..18].to_vec()
+    };
+    // Cells 0 to 3 in the first byte, 4 to 7 in the second, the first in the lowest bits.
+    assert_eq!(written(0), [0x02, 1, 0b10_01_00_00, 0b10_11_10_11]);
+    assert_eq!(written(1), [0x42, 1, 0b00_00_01_00, 0b10_11_10_00]);
+    assert_eq!(written(2), [0x82, 1, 0, 0b01_00_00_00]);
+    let whole = parts(tile).into_iter().fold(Tile::UNKNOWN, Tile::joined);
+    assert_eq!(whole, tile);
+
+    let field = Err(FrameError::Field(Field::Tile));
+    // No fourth form; a form other than the first says something; the last has one code.
+    assert_eq!(decoded(&altered(14, 0xc2)), field);
+    let with = |form: u8, codes: [u8; 2]| {
+        let mut bytes = altered(14, form << 6 | 2);
+        bytes[16..32].fill(0);
+        bytes[16..18].copy_from_slice(&codes);
+        let body = bytes.len() - CRC;
+        let check = CHECK.checksum(&bytes[..body]);
+        bytes[body..].copy_from_slice(&check.to_le_bytes());
+        decoded(&bytes)
+    };
+    assert!(with(0, [0, 0]).is_ok());
+    for (form, codes) in [(1, [0, 0]), (2, [0, 0]), (2, [2, 0]), (2, [1, 3])] {
+        assert_eq!(with(form, codes), field);
+    }
+    assert!(with(1, [1, 0]).is_ok() && with(2, [1, 0]).is_ok());
 }
 
 #[test]

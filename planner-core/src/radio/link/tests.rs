@@ -28,13 +28,7 @@ fn explored() -> Map<4, 4> {
     let mut map = map();
     for at in [TileIndex::new(0, 0), TileIndex::new(3, 2)] {
         let known = 0x0000_3c3c_3c3c_0f0f;
-        map.join_tile(
-            at,
-            Tile {
-                known,
-                ..Tile::UNKNOWN
-            },
-        );
+        map.join_tile(at, Tile::seen(known, 0));
     }
     map
 }
@@ -187,7 +181,7 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
     let here = Cell::new(4, 4);
     let sighting = look(here, 3, |cell| cell.x == 6);
     heard_by.observe(&sighting);
-    heard_by.visit(here);
+    heard_by.stand(here);
     receiver.look(&sighting);
     let say =
         |receiver: &mut Small, heard_by: &mut Map<4, 4>, id, free: &[Cell], walls: &[Cell]| {
@@ -195,12 +189,7 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
             for (cells, obstacle) in [(free, false), (walls, true)] {
                 for &cell in cells {
                     let (at, bit) = TileIndex::of(cell).unwrap();
-                    let tile = Tile {
-                        known: bit,
-                        obstacle: if obstacle { bit } else { 0 },
-                        visited: 0,
-                    };
-                    told.join_tile(at, tile);
+                    told.join_tile(at, Tile::seen(bit, if obstacle { bit } else { 0 }));
                 }
             }
             let mut sender = link(id, LinkConfig::new());
@@ -236,6 +225,7 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
     receiver.joined(Learnt {
         cells: 7,
         closed: 0,
+        ..Learnt::default()
     });
     assert_eq!(receiver.hearsay().cells, 8);
 }

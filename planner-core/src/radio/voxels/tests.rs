@@ -50,16 +50,16 @@ fn full() -> VoxelFrame {
 #[rustfmt::skip]
 const QUIET: [u8; 18] = [
     // version, kind, grid, sender, sequence, state
-    0x01, 0x03, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x01,
+    0x02, 0x03, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x01,
     // position, goal
     0x03, 0xc0, 0x03, 17, 0x00, 0x00, 0x00, 0,
     // CRC
-    0x03, 0x1d,
+    0x22, 0x87,
 ];
 
 #[rustfmt::skip]
 const FULL: [u8; 51] = [
-    0x01, 0x03, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x02,
+    0x02, 0x03, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x02,
     0x03, 0xc0, 0x03, 17, 0x63, 0x10, 0x01, 4,
     // tile 2, 1 of level 5: known as a whole, without obstacles
     0x42, 0x01, 5,
@@ -67,7 +67,7 @@ const FULL: [u8; 51] = [
     0x8c, 0x06, 0, 0x0f, 0x0f, 0, 0, 0, 0, 0, 0, 0x02, 0x01, 0, 0, 0, 0, 0, 0,
     // tile 0, 3 of level 17: one free voxel
     0x00, 0x03, 17, 0, 0, 0, 0, 0, 0, 0, 0x80,
-    0xf2, 0xb0,
+    0x53, 0xdd,
 ];
 
 fn decoded(bytes: &[u8]) -> Result<VoxelFrame, FrameError> {
@@ -108,7 +108,7 @@ fn the_bytes_of_two_frames() {
 #[test]
 fn what_is_wrong_is_named() {
     let field = |field| Err(FrameError::Field(field));
-    assert_eq!(decoded(&altered(0, 2)), Err(FrameError::Version(2)));
+    assert_eq!(decoded(&altered(0, 1)), Err(FrameError::Version(1)));
     assert_eq!(decoded(&altered(1, 2)), Err(FrameError::Kind(2)));
     let other = GridId(0xca00);
     assert_eq!(decoded(&altered(2, 0)), Err(FrameError::OtherGrid(other)));

@@ -147,6 +147,8 @@ typedef enum {
   // The last look saw the next cell of its way blocked, which its map calls free: it
   // looks again, a few times, and then tries all the same.
   PLANNER_WAIT_OBSTRUCTED = 6,
+  // Nothing is left. It will look again at places that were free and are walls now.
+  PLANNER_WAIT_PATROL = 7,
 } PlannerWait;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.

@@ -11,6 +11,7 @@ mod place;
 mod types;
 
 use planner_core::explorer::{Config, Explorer};
+use planner_core::map::MOST_PLACES;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
 use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
@@ -18,7 +19,8 @@ use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting
 pub use place::{PLANNER_WORDS, Planner};
 pub use types::{
     PlannerAction, PlannerActionKind, PlannerBeam, PlannerBearing, PlannerCell, PlannerConfig,
-    PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerStop, PlannerWait,
+    PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerSensor, PlannerStop,
+    PlannerWait,
 };
 
 use place::{Robot, input, inputs, output, robot};
@@ -43,6 +45,10 @@ const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
 pub const PLANNER_TOLERANCE: f32 = 0.1;
 const _: () = assert!(PLANNER_TOLERANCE == RangeSensor::TOLERANCE);
 
+/// Places that `planner_shut` names at most.
+pub const PLANNER_MAX_SHUT: usize = 8;
+const _: () = assert!(PLANNER_MAX_SHUT == MOST_PLACES);
+
 /// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
 /// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 /// planner that runs goes on.
@@ -64,6 +70,8 @@ pub extern "C" fn planner_create(
             return Err(PlannerResult::CellSize);
         }
         let mut explorer = Config::new();
+        explorer.sensor = config.sensor().ok_or(PlannerResult::Sensor)?;
+        explorer.patrol = config.patrol_ticks;
         explorer.link = LinkConfig {
             origin_mm: (config.origin_x_mm, config.origin_y_mm),
             cell_mm: config.cell_mm,
@@ -266,6 +274,32 @@ pub extern "C" fn planner_known(
         let (known, frontiers) = (output(known)?, output(frontiers)?);
         known.write(map.known_cells());
         frontiers.write(map.frontiers());
+        Ok(())
+    })
+}
+
+/// Writes how many cells were free and are walls now (doors that somebody shut), and the
+/// last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
+/// one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
+/// seen: what lies behind these is not part of it.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_shut(
+    planner: *mut Planner,
+    cells: *mut u32,
+    places: *mut PlannerCell,
+    room: usize,
+    count: *mut usize,
+) -> PlannerResult {
+    answer(|| {
+        let shut = robot(planner)?.explorer.map().shut();
+        let (cells, count) = (output(cells)?, output(count)?);
+        let last = shut.places();
+        let last = last.get(last.len().saturating_sub(room)..).unwrap_or(&[]);
+        for (i, at) in last.iter().enumerate() {
+            output(places.wrapping_add(i))?.write(PlannerCell { x: at.x, y: at.y });
+        }
+        cells.write(shut.cells());
+        count.write(last.len());
         Ok(())
     })
 }

@@ -17,6 +17,10 @@ const CONFIG: PlannerConfig = PlannerConfig {
     bytes_per_tick: 55,
     is_keyed: 0,
     key: [0; 16],
+    sensor: PlannerSensor::Truthful as u8,
+    margin: 0,
+    sure_range: 0,
+    patrol_ticks: 0,
 };
 
 /// An action to be overwritten.
@@ -355,6 +359,7 @@ fn a_wait_has_a_reason_and_a_look_a_direction() {
         (Some(Wait::Search), PlannerWait::Search),
         (Some(Wait::Closed), PlannerWait::Closed),
         (Some(Wait::Obstructed), PlannerWait::Obstructed),
+        (Some(Wait::Patrol), PlannerWait::Patrol),
         (Some(Wait::Look(Direction::East)), PlannerWait::Look),
     ];
     for (waiting, wait) in waits {
@@ -550,4 +555,60 @@ fn two_robots_explore_a_hall_and_hear_each_other() {
     );
     assert_eq!(frontiers, 0);
     assert!(known >= 7 * 9 + 2 * 7, "{known}");
+}
+
+#[test]
+fn a_sensor_is_one_of_the_constants_and_its_margin_three_at_most() {
+    let mut memory = memory();
+    let place = planner(&mut memory);
+    for (sensor, margin, result) in [
+        (PlannerSensor::Rangers as u8, 0, PlannerResult::Ok),
+        (PlannerSensor::Lidar as u8, 3, PlannerResult::Ok),
+        (PlannerSensor::Truthful as u8, 1, PlannerResult::Ok),
+        (3, 0, PlannerResult::Sensor),
+        (0, 4, PlannerResult::Sensor),
+    ] {
+        let config = PlannerConfig {
+            sensor,
+            margin,
+            ..CONFIG
+        };
+        assert_eq!(planner_create(place, &config), result, "{sensor}, {margin}");
+    }
+}
+
+#[test]
+fn what_was_shut_is_named() {
+    let mut memory = memory();
+    let ready = created(&mut memory, CONFIG);
+    let seen = |blocked| PlannerSeen {
+        cell: PlannerCell { x: 2, y: 1 },
+        blocked,
+    };
+    let shut = |room| {
+        let (mut cells, mut count) = (9, 9);
+        let mut places = [PlannerCell { x: -1, y: -1 }; PLANNER_MAX_SHUT];
+        let result = planner_shut(ready, &mut cells, places.as_mut_ptr(), room, &mut count);
+        assert_eq!(result, PlannerResult::Ok);
+        (cells, places[..count].to_vec())
+    };
+    let look = |blocked| {
+        let at = PlannerCell { x: 1, y: 1 };
+        let seen = [seen(blocked)];
+        assert_eq!(
+            planner_observe_cells(ready, at, seen.as_ptr(), 1),
+            PlannerResult::Ok
+        );
+        tick(ready);
+    };
+    look(0);
+    assert_eq!(shut(8), (0, vec![]));
+    for _ in 0..4 {
+        look(1);
+    }
+    assert_eq!(shut(8), (1, vec![PlannerCell { x: 2, y: 1 }]));
+    assert_eq!(shut(0), (1, vec![]));
+    let (mut cells, mut count) = (0, 0);
+    let result = planner_shut(ready, &mut cells, null_mut(), 8, &mut count);
+    assert_eq!(result, PlannerResult::Null);
 }

@@ -1,5 +1,6 @@
 //! The plain data of the interface.
 
+use planner_core::explorer::SensorModel;
 use planner_core::radio::FrameError;
 use planner_core::sight::{Beam, Bearing, Pose};
 use planner_core::{Action, Direction, Reason, Wait};
@@ -48,6 +49,8 @@ pub enum PlannerResult {
     FrameField = 17,
     /// Another robot has this robot's id: give each robot its own.
     FrameSameId = 18,
+    /// The sensor is none of the constants, or its margin is above 3.
+    Sensor = 19,
 }
 
 impl From<FrameError> for PlannerResult {
@@ -103,6 +106,51 @@ pub struct PlannerConfig {
     pub is_keyed: u8,
     /// The fleet's secret.
     pub key: [u8; 16],
+    /// How far looks are believed, one of [`PlannerSensor`].
+    pub sensor: u8,
+    /// Votes by which one side leads before a cell is decided, 1 to 3; 0: as the sensor
+    /// has it.
+    pub margin: u8,
+    /// How far from the robot looks can make a cell a wall, in cells; 0: as the sensor has
+    /// it. 2 for a sensor that sees things from afar that are not there.
+    pub sure_range: u8,
+    /// Ticks after which a robot that is done looks again at places that were free and are
+    /// walls now, instead of stopping; 0: it stops.
+    pub patrol_ticks: u16,
+}
+
+/// How far the looks of a sensor can be believed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlannerSensor {
+    /// A few range sensors, one look a step: three votes, each from another cell.
+    Rangers = 0,
+    /// A laser scanner, three looks or more a step: three votes.
+    Lidar = 1,
+    /// Never wrong: the first look decides. For simulations.
+    Truthful = 2,
+}
+
+impl PlannerConfig {
+    /// The model of its sensor; `None` if there is no such one.
+    pub(crate) fn sensor(&self) -> Option<SensorModel> {
+        const RANGERS: u8 = PlannerSensor::Rangers as u8;
+        const LIDAR: u8 = PlannerSensor::Lidar as u8;
+        const TRUTHFUL: u8 = PlannerSensor::Truthful as u8;
+        let mut model = match self.sensor {
+            RANGERS => SensorModel::rangers(),
+            LIDAR => SensorModel::lidar(),
+            TRUTHFUL => SensorModel::truthful(),
+            _ => return None,
+        };
+        if self.margin > 0 {
+            model.margin = self.margin;
+        }
+        if self.sure_range > 0 {
+            model.sure_range = self.sure_range;
+        }
+        (model.margin <= 3).then_some(model)
+    }
 }
 
 /// Where the robot is, in cells: the cell x,y covers x to x + 1 and y to y + 1.
@@ -243,6 +291,8 @@ pub enum PlannerWait {
     /// The last look saw the next cell of its way blocked, which its map calls free: it
     /// looks again, a few times, and then tries all the same.
     Obstructed = 6,
+    /// Nothing is left. It will look again at places that were free and are walls now.
+    Patrol = 7,
 }
 
 /// What a tick decided.
@@ -342,6 +392,7 @@ impl PlannerAction {
                     Some(Wait::Pose) => PlannerWait::Pose,
                     Some(Wait::Search) => PlannerWait::Search,
                     Some(Wait::Closed) => PlannerWait::Closed,
+                    Some(Wait::Patrol) => PlannerWait::Patrol,
                     Some(Wait::Obstructed) => PlannerWait::Obstructed,
                     Some(Wait::Look(direction)) => {
                         told.look = direction.into();

@@ -133,6 +133,14 @@ pub trait Planner<const TW: usize, const TH: usize> {
         Hearsay::default()
     }
 
+    /// Whether the looks have contradicted the map for long: of the walls that they showed
+    /// again lately, most were free. The robot is then not where its poses say, or its
+    /// sensor is broken: what it adds to the map is worth nothing. Never where a planner
+    /// does not compare.
+    fn is_lost(&self) -> bool {
+        false
+    }
+
     /// What the robot knows.
     fn map(&self) -> &Map<TW, TH>;
 

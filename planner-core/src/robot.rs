@@ -268,6 +268,8 @@ pub enum Wait {
     /// The last look saw the next cell of its way blocked, which the map calls free: it
     /// looks again, a few times, and then tries all the same.
     Obstructed,
+    /// Nothing is left. It will look again at places that were free and are walls now.
+    Patrol,
     /// It asks for a look in this direction: turn the sensor there, then observe. A
     /// robot that sees all around need not turn.
     Look(Direction),

@@ -6,7 +6,7 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
 use embedded_hal::i2c::I2c;
 use embedded_hal::pwm::SetDutyCycle;
-use planner_core::explorer::{Config, Explorer};
+use planner_core::explorer::{Config, Explorer, SensorModel};
 use planner_core::sight::{Pose, RangeScan};
 use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId, Wait};
 use static_cell::ConstStaticCell;
@@ -33,6 +33,7 @@ where
 {
     let explorer = EXPLORER.take();
     let mut config = Config::new();
+    config.sensor = SensorModel::rangers();
     config.link.cell_mm = CELL_MM;
     if let Err(error) = explorer.reset(config, RobotId(0), EXTENT, START) {
         defmt::panic!("{}", error);

@@ -127,6 +127,12 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         if self.far_is_doubtful {
             return None;
         }
+        if !self.around.visits.is_empty() {
+            // No way leads to them.
+            self.around.visits.clear();
+            self.far_is_doubtful = true;
+            return None;
+        }
         let frontiers = self.around.map.frontiers();
         let now = self.around.now;
         match self

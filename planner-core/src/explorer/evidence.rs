@@ -147,6 +147,7 @@ pub(super) struct Evidence {
     has_voted: bool,
     /// Ticks on frontier cells since something was learnt.
     barren: u8,
+    strain: Strain,
 }
 
 impl Evidence {
@@ -157,6 +158,7 @@ impl Evidence {
             voted_from: Maybe::Nothing,
             has_voted: false,
             barren: 0,
+            strain: Strain::NONE,
         }
     }
 
@@ -177,6 +179,11 @@ impl Evidence {
     /// Something was learnt.
     pub(super) fn renew(&mut self) {
         self.barren = 0;
+    }
+
+    /// Whether the looks have contradicted the map for long.
+    pub(super) fn is_lost(&self) -> bool {
+        self.strain.is_too_much()
     }
 
     /// Ticks on frontier cells since something was learnt, up to 255.
@@ -213,6 +220,7 @@ impl Evidence {
         {
             counts.set_least(bit);
         }
+        self.strain.relax();
         for at in sighting.tiles() {
             let (free, blocked) = sighting.tile(at);
             if free | blocked == 0 {
@@ -220,6 +228,8 @@ impl Evidence {
             }
             let before = map.tile(at);
             let (known, doubtful) = (before.known(), before.doubtful());
+            let walls = (before.obstacle() | doubtful) & near(at, centre, STRAIN_RANGE);
+            self.strain.add(walls & free, walls & blocked);
             let unknown = !(known | doubtful);
             let mut after = before
                 .with(unknown & free, Level::Free)
@@ -279,6 +289,42 @@ impl Evidence {
             return None;
         }
         self.counts.get_mut(Window::slot((x, y)))
+    }
+}
+
+/// How far walls are compared with looks, in cells each way.
+const STRAIN_RANGE: u8 = 8;
+
+/// How far looks agree with the map: of its walls that they show again, those that they
+/// show free. A robot that has lost its way, and no other in nine public logs of scans,
+/// shows most of them free. Both sums forget a sixteenth a look.
+#[derive(Clone, Copy, Debug)]
+struct Strain {
+    /// Sixteenths of cells.
+    contradicted: u32,
+    shown: u32,
+}
+
+impl Strain {
+    const NONE: Self = Self {
+        contradicted: 0,
+        shown: 0,
+    };
+    /// Walls that the last looks must have shown.
+    const LEAST: u32 = 40;
+
+    fn relax(&mut self) {
+        self.contradicted -= self.contradicted / 16;
+        self.shown -= self.shown / 16;
+    }
+
+    fn add(&mut self, free: u64, blocked: u64) {
+        self.contradicted += 16 * free.count_ones();
+        self.shown += 16 * (free | blocked).count_ones();
+    }
+
+    const fn is_too_much(self) -> bool {
+        self.shown >= 16 * Self::LEAST && 5 * self.contradicted >= 3 * self.shown
     }
 }
 

@@ -222,7 +222,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             return self.next_round(pass, served_before, around.position);
         };
         *work += FRONT_WORK * u32::from(front == 0);
-        let frontier = around.map.frontier(at);
+        let frontier = around.frontier(at);
         while front != 0 {
             *work += FRONT_WORK;
             let (label, cells, rest) = self.wave.first_label(at, front);
@@ -265,7 +265,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
     /// it will see what lies behind them.
     fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
         *work += PATCH_WORK;
-        for (at, cells) in connected(goal, |at| around.map.frontier(at)) {
+        for (at, cells) in connected(goal, |at| around.frontier(at)) {
             self.wave.take(at, cells);
         }
     }

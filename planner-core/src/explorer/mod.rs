@@ -8,24 +8,21 @@
 //! last learnt anything, it may change to a longer plan only a fixed number of times.
 //!
 //! # Premise
-//! - What a look shows free or blocked is so, and stays so. Cells may refuse a step all
-//!   the same, for a while or for ever, and no look need show that.
+//! - Looks may say anything of any cell but the robot's own, and change their mind; so may
+//!   messages, hints and the other robots. Cells may refuse a step, for a while or for
+//!   ever, and no look need show that.
 //! - The robot is where its poses say, or they lie off the grid, for a while.
 //! - The robot can stand on any cell that is free and does not refuse.
-//! - For the reason "complete" alone: of the four neighbours of a cell that the robot
-//!   stands on, each is shown free or blocked by one of the looks that it makes there,
-//!   after it was asked to turn to it ([`Wait::Look`]).
 //!
-//! Nothing is asked of messages, hints or the other robots: what is told of cells is
-//! taken as seen, and whether it was a lie no robot can tell (docs/wire-format.md).
+//! That every robot stops asks for no more. That it then tells the truth asks for looks
+//! that are right often enough: see below.
 //!
 //! # Why every robot stops
-//! Let K be twice the number of unknown cells and once that of free ones. Whatever is
-//! learnt, seen or heard, lowers K; nothing raises it. (A robot that is told that its own
-//! place is an obstacle learns nothing; see `learn_from_others`.) So there are at most as
-//! many *spells*, stretches in which nothing is learnt, as twice the cells, and it is to be
-//! shown that in each the robot stops or learns after a bounded number of ticks. Take, in
-//! lexicographic order:
+//! Levels of cells only rise ([`Level`](crate::map::Level), 0 to 7). Let Φ be the sum of
+//! `7 - level` over all cells: at most 7N for N cells, and it never grows. Whatever is
+//! learnt, seen or heard, lowers it. So there are at most 7N *spells*, stretches in which
+//! nothing is learnt, and it is to be shown that in each the robot stops or learns after a
+//! bounded number of ticks. Take, in lexicographic order:
 //!
 //! 1. rounds left (`aside`), twice the patience at most. A round ends by time or when
 //!    nothing else is left, and its number falls only when something is learnt;
@@ -43,7 +40,9 @@
 //! - *The plan is dropped*: its goal was reached; or its goal or its next cell was set
 //!   aside, which lowered 2. (Were either known otherwise now, something was learnt.)
 //! - *Without a plan on a frontier cell* (`look`): a look is made; after the last one the
-//!   cell is set aside.
+//!   cell is set aside. Where a cell beside it is doubtful, that is not before the margin
+//!   has fallen to one vote (`evidence`): 8 barren ticks for each vote more than one. The
+//!   next look that says anything of the doubtful cell then decides it.
 //! - *The near decision is due and finds a frontier of the robot's own* (`decide_near`).
 //!   It becomes the plan: if it is longer, a token is gone; if not, a step follows. Or it
 //!   is refused: then the way at hand goes on, with a step; or the way at hand is used
@@ -63,6 +62,8 @@
 //!   - *Nothing is left* (`conclude`): if the map or what is set aside has changed since
 //!     it began, it begins again. Otherwise the robot stops, waits for the end of the
 //!     round, or begins the next one.
+//! - *A step is vetoed* (`vetoes`): the last look saw something there. It waits 8 ticks at
+//!   most, and then tries.
 //! - *A step* lowers 4 ([`Motion::Moved`]) or 2 ([`Motion::Blocked`]); if it was held
 //!   ([`Motion::Held`]), the robot counts up to [`Config::holds`] until it made a step, and
 //!   takes the last one for a refusal.
@@ -73,12 +74,23 @@
 //!
 //! Let D be the longest way on the map, F the ticks of a far search, N the cells, p the
 //! patience: a spell has at most 2p·N·(tokens + 2)·(D + F + 4·looks + holds) ticks, and
-//! 4·(p + 1)·2ᵖ of waiting.
+//! 4·(p + 1)·2ᵖ of waiting; D counts a step as 9 ticks where it is vetoed, and looks count
+//! the barren ones.
 //!
 //! # Why its reason is true
 //! The robot's last wave covered every cell that free cells connect with it. If nothing was
-//! set aside, it met no frontier, so these cells are closed off by obstacles: everything
-//! that can be reached is known. In the last round every cell that was closed refused a
+//! set aside, it met no frontier, so these cells are closed off by cells that were decided
+//! to be walls: everything that can be reached is known, if they are. With a truthful
+//! sensor they are. With votes that are wrong with probability `p` and independent, each is
+//! a wall wrongly with the probability that [`SensorModel`] states for its margin; with
+//! fewer wrong looks a cell than the margin, none is. What a robot was told it takes as
+//! decided, until it sees the contrary from near. A wall that was free before (a door that
+//! is shut) is named beside the stop ([`Map::shut`]): "complete" is *as seen*. For the
+//! reason "complete" alone each neighbour of a cell that the robot stands on must be shown
+//! by one of the looks that it makes there, after it was asked to turn to it
+//! ([`Wait::Look`]).
+//!
+//! In the last round every cell that was closed refused a
 //! step in this very round, and no time reopens it: whatever can be reached past them was
 //! reached, however many there are.
 //!
@@ -112,8 +124,9 @@ use others::Others;
 use surroundings::Surroundings;
 use window::NearSearch;
 
-use crate::cell::ExtentError;
-use crate::cell::{Cell, Direction, Extent};
+use heapless::Vec;
+
+use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::map::{Learnt, Map};
 use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
@@ -154,6 +167,9 @@ pub struct Config {
     /// Steps of the way that are remembered, 1 to 256: where they are used up, the robot
     /// searches for the rest. Small numbers are for tests.
     pub way: u16,
+    /// Ticks after which a robot that is done looks again at places that were free and are
+    /// walls now, in turn, instead of stopping; 0: it stops.
+    pub patrol: u16,
     /// How far looks are believed.
     pub sensor: SensorModel,
     /// How the radio is used.
@@ -174,6 +190,7 @@ impl Config {
             looks: 2,
             holds: 64,
             way: role::CAPACITY as u16,
+            patrol: 0,
             sensor: SensorModel::truthful(),
             link: LinkConfig::new(),
         }
@@ -226,6 +243,8 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     last_goal: Option<Cell>,
     /// No new far search before this tick while there is a plan.
     far_again: u32,
+    /// No new visits of shut places before this tick.
+    patrol_again: u32,
     /// Whether the map has changed, or what is set aside, since the far search began.
     far_is_doubtful: bool,
     /// Whether the last tick asked for the first step of the plan.
@@ -260,6 +279,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 looks: 0,
                 holds: 0,
                 way: 0,
+                patrol: 0,
                 sensor: SensorModel::vacant(),
                 link: LinkConfig::vacant(),
             },
@@ -267,6 +287,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             around: Surroundings {
                 map: Map::vacant(),
                 aside: Aside::new(),
+                visits: Vec::new(),
                 position: Cell::new(0, 0),
                 now: 0,
             },
@@ -278,6 +299,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             far: FarSearch::new(),
             last_goal: None,
             far_again: 0,
+            patrol_again: 0,
             far_is_doubtful: false,
             stepping: false,
             is_astray: false,
@@ -318,6 +340,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     ) -> Result<(), ExtentError> {
         self.around.map.reset_with(extent, start)?;
         self.around.aside.reset();
+        self.around.visits.clear();
         self.around.position = start;
         self.around.now = 0;
         self.evidence.reset();
@@ -329,6 +352,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far.cancel();
         self.last_goal = None;
         self.far_again = 0;
+        self.patrol_again = 0;
         self.far_is_doubtful = false;
         self.stepping = false;
         self.is_astray = false;
@@ -349,6 +373,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.far_is_doubtful = true;
             self.around.aside.renew();
             self.evidence.renew();
+            if learnt.opened > 0 {
+                self.around.keep_visits();
+            }
         }
     }
 
@@ -393,22 +420,33 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         if self.role.plan.is_some() || !self.around.is_goal(here) {
             return None;
         }
-        let sides = self.around.unknown_sides(here).count().max(1);
+        let sides = self.around.sides_to_look(here).count().max(1);
         let made = usize::from(self.looks);
-        let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
-        let may_decide = self.evidence.barren() <= self.config.sensor.barren_looks() + 1
-            && self.around.unknown_sides(here).any(is_doubtful);
-        let most = sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS));
-        if made < most || may_decide {
+        let least = sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS));
+        if made < least || self.may_decide(here) {
             self.looks = self.looks.saturating_add(1);
-            return self.around.unknown_sides(here).nth(made % sides);
+            return self.around.sides_to_look(here).nth(made % sides);
         }
         self.looks = 0;
-        let side = self.around.unknown_sides(here).next();
-        let unseen = side.map_or(here, |side| here.step(side));
-        self.around.aside.show_nothing(here, unseen);
+        self.around.end_visits(here);
+        let unseen = self.around.unknown_sides(here).next();
+        if let Some(side) = unseen {
+            self.around.aside.show_nothing(here, here.step(side));
+        }
         self.far_is_doubtful = true;
         None
+    }
+
+    /// Whether more looks may decide of what is beside the cell that the robot stands on.
+    fn may_decide(&self, here: Cell) -> bool {
+        let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
+        let is_visit = |side: Direction| self.around.map.is_known(here.step(side));
+        let (mut sides, mut others) = (
+            self.around.sides_to_look(here),
+            self.around.sides_to_look(here),
+        );
+        sides.any(is_doubtful) && self.evidence.barren() <= self.config.sensor.barren_looks() + 1
+            || others.any(is_visit) && self.looks < MOST_VETOES
     }
 
     /// A step was refused: the plan leads nowhere, and others may be as good now.
@@ -457,6 +495,24 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn wait(&mut self, reason: Wait) -> Action {
         self.waiting = Maybe::Just(reason);
         Action::Wait
+    }
+
+    /// Nothing is left: the robot stops, or on patrol looks at shut places again.
+    fn finish(&mut self, stop: Stop) -> Action {
+        let now = self.around.now;
+        if self.config.patrol == 0
+            || !stop.is_complete()
+            || self.around.map.shut().places().is_empty()
+        {
+            return self.stop(stop);
+        }
+        self.role.plan = None;
+        self.far.cancel();
+        if now >= self.patrol_again {
+            self.patrol_again = now.saturating_add(u32::from(self.config.patrol));
+            self.around.visit_shut_places();
+        }
+        self.wait(Wait::Patrol)
     }
 
     fn stop(&mut self, stop: Stop) -> Action {
@@ -518,9 +574,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             // Nothing seen yet is not the same as nothing left.
             return self.wait(Wait::Sight);
         }
-        if self.around.map.frontiers() == 0 {
+        if self.around.is_done() {
             let edge = self.around.map.free_edge_cells();
-            return self.stop(Stop::nothing_left(edge));
+            return self.finish(Stop::nothing_left(edge));
         }
         self.others.forget(self.around.now, self.config.memory);
         if self.others.pay(&self.around.map) {
@@ -558,7 +614,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                 }
                 Outcome::NothingLeft => {
                     if let Some(stop) = self.conclude() {
-                        return self.stop(stop);
+                        return self.finish(stop);
                     }
                 }
                 Outcome::Lost => {
@@ -593,6 +649,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.role.changes = 0;
         self.role.lost = 0;
         self.around.aside.reset();
+        self.around.visit_shut_places();
         self.looks = 0;
         self.holds = 0;
         self.far.cancel();
@@ -646,6 +703,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.hear(heard.from, status);
         }
         Ok(heard)
+    }
+
+    fn is_lost(&self) -> bool {
+        self.evidence.is_lost()
     }
 
     fn hearsay(&self) -> Hearsay {

@@ -43,6 +43,8 @@ struct Trouble {
     astray: Vec<(usize, u32, u32)>,
     /// Of the tiles that could be seen, those out of 256 that are told before the start.
     told: u8,
+    /// Looks at a cell that are wrong, out of 256.
+    noise: u8,
 }
 
 impl Trouble {
@@ -174,6 +176,21 @@ impl Scene {
     }
 }
 
+/// What a sensor says that is wrong now and then, of any cell but the robot's own.
+fn noisy(sighting: &Sighting, noise: u8, dice: &mut Dice) -> Sighting {
+    let mut told = Sighting::new(sighting.centre());
+    let mut tell = |cell: Cell, blocked: bool| {
+        if blocked != (dice.roll() < noise) {
+            told.see_blocked(cell);
+        } else {
+            told.see_free(cell);
+        }
+    };
+    sighting.free_cells().for_each(|cell| tell(cell, false));
+    sighting.blocked_cells().for_each(|cell| tell(cell, true));
+    told
+}
+
 /// No step is refused from this tick on: within the patience of the default
 /// configuration, 4 + 8 + … + 256 ticks of pauses before the eighth refusal.
 const CLEARED: u32 = 400;
@@ -227,7 +244,28 @@ fn trouble(cells: usize, width: u16, robots: usize) -> impl Strategy<Value = Tro
             view,
             astray,
             told,
+            noise: 0,
         })
+}
+
+fn sensor() -> impl Strategy<Value = SensorModel> {
+    let votes = prop_oneof![Just(Votes::PerLook), Just(Votes::PerPlace)];
+    let any_model = (1..=3u8, votes, 1..=15u8, [0..=15u8, 0..=15], any::<bool>()).prop_map(
+        |(margin, votes, sure_range, [flip_range, visited_range], sees_robots)| SensorModel {
+            margin,
+            votes,
+            sure_range,
+            flip_range,
+            visited_range,
+            sees_robots,
+        },
+    );
+    prop_oneof![
+        Just(SensorModel::truthful()),
+        Just(SensorModel::lidar()),
+        Just(SensorModel::rangers()),
+        any_model,
+    ]
 }
 
 fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
@@ -238,6 +276,7 @@ fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
                 prop_oneof![Just(0u8), 0u8..100],
                 any::<bool>(),
                 trouble(cells, width, robots),
+                sensor(),
             );
             (
                 proptest::collection::vec(proptest::bool::weighted(share), cells),
@@ -252,7 +291,7 @@ fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
             )
                 .prop_map(
                     move |(mut walls, starts, radius, slice, way, sync, rest)| {
-                        let (refusals, solid, mut trouble) = rest;
+                        let (refusals, solid, mut trouble, mut sensor) = rest;
                         for &start in &starts {
                             walls[start] = false;
                         }
@@ -269,6 +308,7 @@ fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
                         }
                         if !is_troubled {
                             trouble = Trouble::default();
+                            sensor = SensorModel::truthful();
                         }
                         trouble.astray.retain(|(robot, ..)| *robot < start.len());
                         // A robot that leaves such a cell cannot go back.
@@ -281,6 +321,7 @@ fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
                             config: Config {
                                 slice,
                                 way,
+                                sensor,
                                 ..Config::new()
                             },
                             sync,
@@ -342,7 +383,10 @@ fn run(scene: &Scene, limit: u32) -> Ended {
                 let look = looks
                     .entry((place.x, place.y, side as u8))
                     .or_insert_with(|| scene.look(place, side));
-                robot.observe(look);
+                match scene.trouble.noise {
+                    0 => robot.observe(look),
+                    noise => robot.observe(&noisy(look, noise, &mut dice)),
+                };
             }
             for ghost in &scene.trouble.ghosts {
                 if ticks < ghost.silence && usize::from(ghost.id) != i {
@@ -376,6 +420,10 @@ fn run(scene: &Scene, limit: u32) -> Ended {
                     assert!(!is_astray(i), "a step from nowhere");
                     let next = at[i].step(step);
                     heading[i] = step;
+                    if scene.trouble.noise > 0 && scene.is_blocked(next) {
+                        robots[i].report(Motion::Blocked);
+                        continue;
+                    }
                     assert!(!scene.is_blocked(next), "a step into an obstacle at {next}");
                     assert!(robots[i].work() <= scene.config.work_bound());
                     let holder = at.iter().position(|&cell| cell == next);
@@ -545,6 +593,27 @@ proptest! {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: soak().cases.div_ceil(10), ..soak() })]
+
+    /// Whatever the sensor says, of every cell but the robot's own.
+    #[test]
+    fn every_robot_stops_whatever_it_sees(mut scene in scene(true), noise in any::<u8>()) {
+        scene.trouble.noise = noise;
+        let ended = run(&scene, 400_000);
+        for (robot, stop) in ended.robots.iter().zip(&ended.stops) {
+            prop_assert!(
+                stop.is_some(),
+                "still running at {}, waiting for {:?}, the plan {:?}\n{:?}",
+                robot.around.position,
+                robot.waiting(),
+                robot.role,
+                robot.map()
+            );
+        }
+    }
+}
+
+proptest! {
     #[test]
     fn the_same_scene_runs_the_same(scene in scene(true)) {
         let (a, b) = (run(&scene, 300), run(&scene, 300));
@@ -554,4 +623,164 @@ proptest! {
             prop_assert!(a.map() == b.map());
         }
     }
+}
+
+/// A corridor with a door in the middle, which is free when it is first seen.
+fn before_a_door(config: Config) -> (Small, impl Fn(Cell, bool) -> bool) {
+    let extent = Extent::new(12, 3);
+    let robot = Small::new(config, RobotId(0), extent, Cell::new(1, 1)).unwrap();
+    let is_blocked = move |cell: Cell, is_shut: bool| {
+        !extent.contains(cell) || cell.y != 1 || is_shut && cell == Cell::new(5, 1)
+    };
+    (robot, is_blocked)
+}
+
+/// Goes on until the robot stops or waits on patrol; whether the door is shut, tick by tick.
+fn go(
+    robot: &mut Small,
+    is_blocked: &impl Fn(Cell, bool) -> bool,
+    is_shut: impl Fn(u32) -> bool,
+) -> Option<Stop> {
+    for tick in 0..2000 {
+        let here = robot.status().position;
+        robot.observe(&look(here, 3, |cell| is_blocked(cell, is_shut(tick))));
+        match robot.tick() {
+            Action::Move(step) if is_blocked(here.step(step), is_shut(tick)) => {
+                panic!("a bump, where looks are right");
+            }
+            Action::Move(_) => robot.report(Motion::Moved),
+            Action::Wait if robot.waiting() == Some(Wait::Patrol) => return None,
+            Action::Wait => {}
+            Action::Stop(stop) => return Some(stop),
+        }
+    }
+    panic!("it goes on and on");
+}
+
+const DOOR: Cell = Cell::new(5, 1);
+
+fn models() -> [SensorModel; 3] {
+    [
+        SensorModel::truthful(),
+        SensorModel::lidar(),
+        SensorModel::rangers(),
+    ]
+}
+
+#[test]
+fn a_door_that_is_shut_is_named_and_visited_after_resume() {
+    for sensor in models() {
+        let (mut robot, is_blocked) = before_a_door(Config {
+            sensor,
+            ..Config::new()
+        });
+        assert_eq!(
+            go(&mut robot, &is_blocked, |tick| tick > 1),
+            Some(Stop::Complete)
+        );
+        assert_eq!(
+            (robot.map().shut().cells(), robot.map().shut().places()),
+            (1, &[DOOR][..])
+        );
+        assert!(!robot.map().is_known(Cell::new(9, 1)));
+        // Nothing has opened: it looks, and stops again.
+        robot.resume();
+        assert_eq!(go(&mut robot, &is_blocked, |_| true), Some(Stop::Complete));
+        assert_eq!(robot.map().shut().places(), [DOOR]);
+        robot.resume();
+        assert_eq!(go(&mut robot, &is_blocked, |_| false), Some(Stop::Complete));
+        assert_eq!(
+            (robot.map().shut().cells(), robot.map().unknown_cells()),
+            (0, 0)
+        );
+    }
+}
+
+#[test]
+fn a_robot_on_patrol_looks_at_shut_places_in_turn_instead_of_stopping() {
+    for sensor in models() {
+        let (mut robot, is_blocked) = before_a_door(Config {
+            sensor,
+            patrol: 50,
+            ..Config::new()
+        });
+        assert_eq!(go(&mut robot, &is_blocked, |tick| tick > 1), None);
+        assert_eq!(robot.map().shut().places(), [DOOR]);
+        for tick in 0..300 {
+            let here = robot.status().position;
+            robot.observe(&look(here, 3, |cell| is_blocked(cell, true)));
+            match robot.tick() {
+                Action::Move(_) => robot.report(Motion::Moved),
+                Action::Wait => {}
+                Action::Stop(stop) => panic!("{stop} after {tick} ticks on patrol"),
+            }
+        }
+        // Once it is open and all is known, nothing is left to watch.
+        let stop = (0..20).find_map(|_| go(&mut robot, &is_blocked, |_| false));
+        assert_eq!(stop, Some(Stop::Complete));
+        assert_eq!(robot.map().unknown_cells(), 0);
+    }
+}
+
+/// What a look saw in the way of a robot stops it before any map does.
+#[test]
+fn a_robot_does_not_step_into_what_it_sees() {
+    for sensor in models() {
+        let (mut robot, is_blocked) = before_a_door(Config {
+            sensor,
+            ..Config::new()
+        });
+        // Somebody stands in the door for six ticks, just before the robot enters it.
+        let mut waited = 0;
+        for tick in 0..200 {
+            let here = robot.status().position;
+            let is_there = here == Cell::new(4, 1) && waited < 6;
+            robot.observe(&look(here, 3, |cell| is_blocked(cell, is_there)));
+            match robot.tick() {
+                Action::Move(_) if is_there => panic!("it steps on somebody, in tick {tick}"),
+                Action::Move(_) => robot.report(Motion::Moved),
+                Action::Wait => waited += u32::from(is_there),
+                Action::Stop(stop) => {
+                    assert!(stop.is_complete());
+                    break;
+                }
+            }
+        }
+        assert_eq!(robot.map().unknown_cells(), 0, "{:?}", robot.map());
+    }
+}
+
+#[test]
+fn a_robot_does_not_take_another_for_a_wall() {
+    let extent = Extent::new(12, 3);
+    let config = Config {
+        sensor: SensorModel::lidar(),
+        ..Config::new()
+    };
+    let mut robot = Small::new(config, RobotId(0), extent, Cell::new(1, 1)).unwrap();
+    let other = Cell::new(3, 1);
+    let status = Status {
+        position: other,
+        goal: None,
+        activity: Activity::Stopped,
+    };
+    for _ in 0..10 {
+        robot.hear(RobotId(1), status);
+        robot.observe(&look(Cell::new(1, 1), 3, |cell| {
+            !extent.contains(cell) || cell == other
+        }));
+        robot.tick();
+        robot.report(Motion::Held);
+    }
+    assert!(!robot.map().is_obstacle(other) && !robot.map().is_doubtful(other));
+    // Unheard, it is one.
+    let mut robot = Small::new(config, RobotId(0), extent, Cell::new(1, 1)).unwrap();
+    for _ in 0..10 {
+        robot.observe(&look(Cell::new(1, 1), 3, |cell| {
+            !extent.contains(cell) || cell == other
+        }));
+        robot.tick();
+        robot.report(Motion::Held);
+    }
+    assert!(robot.map().is_obstacle(other));
 }

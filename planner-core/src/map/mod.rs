@@ -5,15 +5,19 @@
 //! \[Yamauchi1997\]. Cells beyond the extent count as known obstacles, so the map
 //! has no special edge.
 
+mod shut;
 mod tile;
 
 use core::fmt;
 
+pub use shut::{MOST_PLACES, Shut};
 pub use tile::{Level, Tile};
 
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::sight::Sighting;
-use crate::tile::{MOST_TILES, TILE, TileIndex, TileSet, Tiles, carried, every_tile, neighbours};
+use crate::tile::{
+    MOST_TILES, TILE, TileIndex, TileSet, Tiles, bits, carried, every_tile, neighbours,
+};
 
 /// What a map learnt from a sighting, a tile or another map.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,9 +53,9 @@ impl core::ops::AddAssign for Learnt {
 /// An occupancy grid of at most `8·TW` × `8·TH` cells. `TW` and `TH`
 /// are at most 64.
 ///
-/// Memory: 24 bytes a tile for the layers, 1 for its frontier count, and 8 bytes
-/// a row of tiles.
-#[derive(Clone, PartialEq, Eq)]
+/// Memory: 24 bytes a tile for the layers, 1 for its frontier count, 8 bytes a row of
+/// tiles, and 76.
+#[derive(Clone)]
 pub struct Map<const TW: usize, const TH: usize> {
     extent: Extent,
     tiles: Tiles<Tile, TW, TH>,
@@ -60,8 +64,18 @@ pub struct Map<const TW: usize, const TH: usize> {
     unknown: u32,
     /// Free cells on the edge of the extent.
     edge: u32,
+    shut: Shut,
     changed: TileSet<TH>,
 }
+
+/// Maps are equal that know the same.
+impl<const TW: usize, const TH: usize> PartialEq for Map<TW, TH> {
+    fn eq(&self, other: &Self) -> bool {
+        self.extent == other.extent && self.tiles == other.tiles
+    }
+}
+
+impl<const TW: usize, const TH: usize> Eq for Map<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Default for Map<TW, TH> {
     fn default() -> Self {
@@ -93,6 +107,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             frontiers: 0,
             unknown: 0,
             edge: 0,
+            shut: Shut::new(),
             changed: TileSet::new(),
         }
     }
@@ -118,6 +133,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.frontiers = 0;
         self.unknown = extent.cells();
         self.edge = 0;
+        self.shut = Shut::new();
         self.changed.clear();
         for (at, tile) in every_tile(TW, TH).zip(self.tiles.values_mut()) {
             *tile = Tile::seen(0, !at.inside(extent));
@@ -166,6 +182,11 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// them.
     pub const fn free_edge_cells(&self) -> u32 {
         self.edge
+    }
+
+    /// What was free and is a wall now.
+    pub const fn shut(&self) -> &Shut {
+        &self.shut
     }
 
     /// One tile; outside of the map, obstacles.
@@ -306,6 +327,13 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             let edge = at.edge(self.extent);
             self.edge += (after.free() & edge).count_ones();
             self.edge -= (before.free() & edge).count_ones();
+            for bit in bits(after.obstacle() & before.free()) {
+                self.shut.add(at.cell(bit));
+            }
+            for bit in bits(after.free() & before.obstacle()) {
+                let was_free = before.level(bit) == Level::WallAgain;
+                self.shut.remove(at.cell(bit), was_free);
+            }
             self.recount(at);
             if learnt.cells > 0 {
                 for direction in Direction::ALL {

@@ -164,6 +164,49 @@ fn where_a_robot_stands_is_free_twice_over() {
     );
 }
 
+#[test]
+fn what_was_free_and_is_a_wall_is_named_until_it_opens() {
+    let mut map = Small::new(EXTENT).unwrap();
+    let set = |map: &mut Small, x: i16, level| {
+        let (at, bit) = TileIndex::of(Cell::new(x, 3)).unwrap();
+        map.join_tile(at, Tile::UNKNOWN.with(bit, level));
+    };
+    let places = |map: &Small| {
+        map.shut()
+            .places()
+            .iter()
+            .map(|at| at.x)
+            .collect::<Vec<_>>()
+    };
+    set(&mut map, 20, Level::Wall);
+    assert_eq!(map.shut().cells(), 0, "it was never free");
+    for x in 0..10 {
+        set(&mut map, x, Level::Free);
+        set(&mut map, x, Level::Wall);
+    }
+    assert_eq!((map.shut().cells(), places(&map)), (10, (2..10).collect()));
+    set(&mut map, 4, Level::FreeAgain);
+    set(&mut map, 20, Level::FreeAgain);
+    assert_eq!(
+        (map.shut().cells(), places(&map)),
+        (9, vec![2, 3, 5, 6, 7, 8, 9])
+    );
+    set(&mut map, 4, Level::WallAgain);
+    assert_eq!(
+        (map.shut().cells(), places(&map)),
+        (10, vec![2, 3, 5, 6, 7, 8, 9, 4])
+    );
+    for x in [10, 11] {
+        set(&mut map, x, Level::Free);
+        set(&mut map, x, Level::Wall);
+    }
+    set(&mut map, 4, Level::FreeForGood);
+    assert_eq!(
+        (map.shut().cells(), places(&map)),
+        (11, vec![5, 6, 7, 8, 9, 10, 11])
+    );
+}
+
 proptest! {
     #[test]
     fn tiles_join_as_the_naive_map_does(tiles in tiles()) {

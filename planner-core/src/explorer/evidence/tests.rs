@@ -289,3 +289,32 @@ fn wrong_decisions_are_as_rare_as_the_margin_says() {
         assert!(share <= 2.0 * most, "{percent} %, margin {margin}: {share}");
     }
 }
+
+/// A robot that walks along walls and believes itself somewhere else is lost before long;
+/// one whose looks are wrong at one cell in ten is not.
+#[test]
+fn looks_that_contradict_the_map_for_long_are_told() {
+    let is_wall = |cell: Cell| !EXTENT.contains(cell) || cell.x % 8 == 3 && cell.y % 8 > 1;
+    for (noise, drift, is_lost) in [(0, 0, false), (10, 0, false), (0, 4, true)] {
+        let mut dice = Rng::new(3, 0);
+        let (mut map, mut evidence) = (map(), Evidence::new());
+        for round in 0..3 {
+            for x in 5..80i16 {
+                // Walls stand where they are; the robot believes to be `off` beside.
+                let off = if round == 0 { 0 } else { drift };
+                let at = Cell::new(x, 16);
+                let seen = look(at, 6, |cell| {
+                    is_wall(Cell::new(cell.x + off, cell.y))
+                        != (dice.next_u32() % 100 < noise && cell != at)
+                });
+                evidence.tick();
+                evidence.observe(&mut map, &seen, &SensorModel::lidar(), false);
+                assert!(is_lost || !evidence.is_lost(), "{noise} %, at {x}");
+                if is_lost && evidence.is_lost() {
+                    return;
+                }
+            }
+        }
+        assert!(!is_lost, "it does not notice");
+    }
+}

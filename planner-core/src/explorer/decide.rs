@@ -134,6 +134,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             return None;
         }
         let frontiers = self.around.map.frontiers();
+        if frontiers == 0 {
+            return Some(Stop::nothing_left(self.around.map.free_edge_cells()));
+        }
         let now = self.around.now;
         match self
             .around

@@ -472,7 +472,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let is_near = |body: &Cell| body.chebyshev(centre) <= u16::from(MAX_RADIUS);
         let mut bodies = self.others.bodies(now).filter(is_near).peekable();
         let map = &mut self.around.map;
-        if !sensor.sees_robots || bodies.peek().is_none() {
+        // A look for its own sake is taken as it is: a robot that is only pretended hides
+        // nothing for long.
+        if !sensor.sees_robots || idles || bodies.peek().is_none() {
             return self.evidence.observe(map, sighting, &sensor, idles);
         }
         let mut sighting = sighting.clone();

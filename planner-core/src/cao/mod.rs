@@ -6,16 +6,15 @@
 //! dual form: for `N` rows Φ the matrix K = ΦΦᵀ + λI is `N`×`N` instead of 20×20,
 //! and ϑ = Φᵀ K⁻¹ y is the same minimiser at a quarter of the work.
 
-mod cholesky;
 mod history;
 mod polynomial;
 
 pub(crate) use history::History;
 pub use polynomial::{Degree, TERMS};
 
+use nalgebra::{SMatrix, SVector};
 use polynomial::monomials;
 
-use crate::math;
 use crate::point::Point;
 
 /// One measurement of the objective.
@@ -62,35 +61,24 @@ impl Model {
         degree: Degree,
         ridge: f32,
     ) -> Option<Self> {
-        let is_usable = ridge > 0.0 && ridge.is_finite();
-        if samples.is_empty() || !is_usable {
+        if samples.is_empty() || ridge.is_nan() || ridge <= 0.0 {
             return None;
         }
         // Rows without a sample stay zero: they add λ to the diagonal of K and
         // nothing to the result.
-        let mut rows = [[0.0; TERMS]; N];
-        let mut values = [0.0; N];
-        for ((row, value), sample) in rows.iter_mut().zip(&mut values).zip(samples) {
-            let root = math::sqrt(sample.weight);
-            *row = monomials(frame, sample.at, degree).map(|term| term * root);
+        let mut rows = SMatrix::<f32, N, TERMS>::zeros();
+        let mut values = SVector::<f32, N>::zeros();
+        for ((mut row, value), sample) in rows.row_iter_mut().zip(values.iter_mut()).zip(samples) {
+            let root = crate::math::sqrt(sample.weight);
+            let terms = monomials(frame, sample.at, degree);
+            for (entry, term) in row.iter_mut().zip(terms) {
+                *entry = term * root;
+            }
             *value = sample.value * root;
         }
-        let mut kernel: cholesky::Matrix<N> = [[0.0; N]; N];
-        for (j, (column, right)) in kernel.iter_mut().zip(&rows).enumerate() {
-            for (entry, left) in column.iter_mut().zip(&rows).skip(j) {
-                *entry = left.iter().zip(right).map(|(a, b)| a * b).sum();
-            }
-            if let Some(diagonal) = column.get_mut(j) {
-                *diagonal += ridge;
-            }
-        }
-        let dual = cholesky::solve(kernel, values)?;
-        let mut coefficients = [0.0; TERMS];
-        for (row, factor) in rows.iter().zip(dual) {
-            for (coefficient, term) in coefficients.iter_mut().zip(row) {
-                *coefficient += term * factor;
-            }
-        }
+        let kernel = rows * rows.transpose() + SMatrix::<f32, N, N>::identity() * ridge;
+        let dual = kernel.cholesky()?.solve(&values);
+        let coefficients: [f32; TERMS] = (rows.transpose() * dual).into();
         coefficients.iter().all(|c| c.is_finite()).then_some(Self {
             frame,
             coefficients,

@@ -22,37 +22,16 @@ fn samples_of(points: &[(f32, f32, f32, f32)]) -> Vec<Sample> {
 }
 
 /// The same minimiser by the normal equations (ΦᵀΦ + λI) ϑ = Φᵀy, in f64.
-fn primal(samples: &[Sample], frame: Frame, ridge: f64) -> [f64; TERMS] {
-    let mut equations = [[0.0; TERMS + 1]; TERMS];
-    for (i, equation) in equations.iter_mut().enumerate() {
-        equation[i] = ridge;
-        for sample in samples {
-            let row = monomials(frame, sample.at, Degree::Cubic).map(f64::from);
-            let known = row.iter().copied().chain([f64::from(sample.value)]);
-            for (entry, term) in equation.iter_mut().zip(known) {
-                *entry += row[i] * term;
-            }
-        }
+fn primal(samples: &[Sample], frame: Frame, ridge: f64) -> Vec<f64> {
+    let mut normal = SMatrix::<f64, TERMS, TERMS>::identity() * ridge;
+    let mut right = SVector::<f64, TERMS>::zeros();
+    for sample in samples {
+        let row = SVector::from(monomials(frame, sample.at, Degree::Cubic)).cast::<f64>();
+        normal += row * row.transpose();
+        right += row * f64::from(sample.value);
     }
-    eliminate(equations)
-}
-
-/// The solution of equations with a dominant diagonal, by Gauss.
-fn eliminate<const N: usize, const M: usize>(mut equations: [[f64; M]; N]) -> [f64; N] {
-    for i in 0..N {
-        let pivot = equations[i].map(|entry| entry / equations[i][i]);
-        for (j, equation) in equations.iter_mut().enumerate() {
-            let factor = if i == j {
-                equation[i] - 1.0
-            } else {
-                equation[i]
-            };
-            for (entry, pivot) in equation.iter_mut().zip(pivot) {
-                *entry -= factor * pivot;
-            }
-        }
-    }
-    equations.map(|equation| equation[N])
+    let theta = normal.cholesky().unwrap().solve(&right);
+    theta.iter().copied().collect()
 }
 
 fn in_unit_ball() -> impl Strategy<Value = (f32, f32, f32, f32)> {

@@ -32,7 +32,10 @@
 // millimetres of error on cells of 50 mm and more.
 #define PLANNER_TOLERANCE 0.1
 
-// Size of a planner in words of 8 bytes: the 28 KiB that an explorer may take by
+// Places that `planner_shut` names at most.
+#define PLANNER_MAX_SHUT 8
+
+// Size of a planner in words of 8 bytes: the 28.5 KiB that an explorer may take by
 // `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
 #define PLANNER_WORDS 3649
 
@@ -77,6 +80,8 @@ typedef enum {
   PLANNER_RESULT_FRAME_FIELD = 17,
   // Another robot has this robot's id: give each robot its own.
   PLANNER_RESULT_FRAME_SAME_ID = 18,
+  // The sensor is none of the constants, or its margin is above 3.
+  PLANNER_RESULT_SENSOR = 19,
 } PlannerResult;
 
 // What the robot shall do.
@@ -149,6 +154,9 @@ typedef enum {
   PLANNER_WAIT_OBSTRUCTED = 6,
   // Nothing is left. It will look again at places that were free and are walls now.
   PLANNER_WAIT_PATROL = 7,
+  // Nothing seems to be left, but its last look showed a wall of its map free, near by:
+  // it looks again, a few times, before it says so.
+  PLANNER_WAIT_DOUBT = 8,
 } PlannerWait;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.
@@ -190,6 +198,17 @@ typedef struct {
   uint8_t is_keyed;
   // The fleet's secret.
   uint8_t key[16];
+  // How far looks are believed, one of [`PlannerSensor`].
+  uint8_t sensor;
+  // Votes by which one side leads before a cell is decided, 1 to 3; 0: as the sensor
+  // has it.
+  uint8_t margin;
+  // How far from the robot looks can make a cell a wall, in cells; 0: as the sensor has
+  // it. 2 for a sensor that sees things from afar that are not there.
+  uint8_t sure_range;
+  // Ticks after which a robot that is done looks again at places that were free and are
+  // walls now, instead of stopping; 0: it stops.
+  uint16_t patrol_ticks;
 } PlannerConfig;
 
 // A direction relative to the heading, as a vector of length 1; `planner_bearing` makes
@@ -326,6 +345,16 @@ PlannerResult planner_receive(Planner *planner, const uint8_t *frame, size_t len
 
 // Writes how many cells of the map are known, and how many of them are frontiers.
 PlannerResult planner_known(Planner *planner, uint32_t *known, uint32_t *frontiers);
+
+// Writes how many cells were free and are walls now (doors that somebody shut), and the
+// last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
+// one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
+// seen: what lies behind these is not part of it.
+PlannerResult planner_shut(Planner *planner,
+                           uint32_t *cells,
+                           PlannerCell *places,
+                           size_t room,
+                           size_t *count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -360,6 +360,7 @@ fn a_wait_has_a_reason_and_a_look_a_direction() {
         (Some(Wait::Closed), PlannerWait::Closed),
         (Some(Wait::Obstructed), PlannerWait::Obstructed),
         (Some(Wait::Patrol), PlannerWait::Patrol),
+        (Some(Wait::Doubt), PlannerWait::Doubt),
         (Some(Wait::Look(Direction::East)), PlannerWait::Look),
     ];
     for (waiting, wait) in waits {

@@ -293,6 +293,9 @@ pub enum PlannerWait {
     Obstructed = 6,
     /// Nothing is left. It will look again at places that were free and are walls now.
     Patrol = 7,
+    /// Nothing seems to be left, but its last look showed a wall of its map free, near by:
+    /// it looks again, a few times, before it says so.
+    Doubt = 8,
 }
 
 /// What a tick decided.
@@ -392,6 +395,7 @@ impl PlannerAction {
                     Some(Wait::Pose) => PlannerWait::Pose,
                     Some(Wait::Search) => PlannerWait::Search,
                     Some(Wait::Closed) => PlannerWait::Closed,
+                    Some(Wait::Doubt) => PlannerWait::Doubt,
                     Some(Wait::Patrol) => PlannerWait::Patrol,
                     Some(Wait::Obstructed) => PlannerWait::Obstructed,
                     Some(Wait::Look(direction)) => {

@@ -21,7 +21,7 @@ static int failures;
     } while (0)
 
 static PlannerConfig usual(void) {
-    return (PlannerConfig){.id = 1, .width = 20, .height = 20, .start = {5, 5}, .cell_mm = 100, .bytes_per_tick = 55};
+    return (PlannerConfig){.id = 1, .width = 20, .height = 20, .start = {5, 5}, .cell_mm = 100, .bytes_per_tick = 55, .sensor = PLANNER_SENSOR_TRUTHFUL};
 }
 
 static void look(Planner *planner, PlannerCell at) {
@@ -52,6 +52,8 @@ static void nothing_is_created(Planner *planner) {
     CHECK(planner_receive(planner, frame, 16), wanted);
     CHECK(planner_known(planner, &known, &frontiers), wanted);
     CHECK(planner_is_mute(planner, &is_mute), wanted);
+    PlannerCell shut[PLANNER_MAX_SHUT];
+    CHECK(planner_shut(planner, &known, shut, PLANNER_MAX_SHUT, &length), wanted);
 }
 
 // Creates with what cannot be: the memory stays as it is, byte by byte.
@@ -82,6 +84,12 @@ static void all_refused(Planner *planner) {
     config = usual();
     config.cell_mm = 0;
     refused(planner, config, PLANNER_RESULT_CELL_SIZE);
+    config = usual();
+    config.sensor = 3;
+    refused(planner, config, PLANNER_RESULT_SENSOR);
+    config.sensor = PLANNER_SENSOR_LIDAR;
+    config.margin = 4;
+    refused(planner, config, PLANNER_RESULT_SENSOR);
 }
 
 static void a_failed_create_changes_nothing(Planner *planner) {

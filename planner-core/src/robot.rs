@@ -268,6 +268,9 @@ pub enum Wait {
     /// The last look saw the next cell of its way blocked, which the map calls free: it
     /// looks again, a few times, and then tries all the same.
     Obstructed,
+    /// Nothing seems to be left, but its last look showed a wall of its map free, near by:
+    /// it looks again, a few times, before it says so.
+    Doubt,
     /// Nothing is left. It will look again at places that were free and are walls now.
     Patrol,
     /// It asks for a look in this direction: turn the sensor there, then observe. A

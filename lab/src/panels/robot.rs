@@ -123,6 +123,7 @@ fn reason(wait: Wait) -> String {
         Wait::Pose => "waits: its pose lies off the map".into(),
         Wait::Search => "waits: it searches the map".into(),
         Wait::Closed => "waits: what is left is behind cells that refused it".into(),
+        Wait::Doubt => "waits: it sees a wall of its map free".into(),
         Wait::Patrol => "waits on patrol: nothing is left".into(),
         Wait::Obstructed => "waits: it sees something in its way".into(),
         Wait::Look(way) => format!("looks {}", name(way)),

@@ -147,6 +147,8 @@ pub(super) struct Evidence {
     has_voted: bool,
     /// Ticks on frontier cells since something was learnt.
     barren: u8,
+    /// Whether the last look showed a wall free from near.
+    is_disputed: bool,
     strain: Strain,
 }
 
@@ -158,6 +160,7 @@ impl Evidence {
             voted_from: Maybe::Nothing,
             has_voted: false,
             barren: 0,
+            is_disputed: false,
             strain: Strain::NONE,
         }
     }
@@ -181,6 +184,17 @@ impl Evidence {
         self.barren = 0;
     }
 
+    /// Something that was seen free was told to be a wall.
+    pub(super) fn dispute(&mut self) {
+        self.is_disputed = true;
+    }
+
+    /// Whether the last look showed a wall of the map free, from so near that looks can
+    /// change it.
+    pub(super) fn is_disputed(&self) -> bool {
+        self.is_disputed
+    }
+
     /// Whether the looks have contradicted the map for long.
     pub(super) fn is_lost(&self) -> bool {
         self.strain.is_too_much()
@@ -192,7 +206,8 @@ impl Evidence {
     }
 
     /// Takes in what was seen from a cell of the extent; `idles` says whether the robot
-    /// stands there for the sake of looking. Work: at most 25 tiles, each with its four
+    /// stands there for the sake of looking, `hidden` which cells of a tile are left out
+    /// where they were seen blocked. Work: at most 25 tiles, each with its four
     /// neighbours.
     pub(super) fn observe<const TW: usize, const TH: usize>(
         &mut self,
@@ -200,6 +215,7 @@ impl Evidence {
         sighting: &Sighting,
         model: &SensorModel,
         idles: bool,
+        hidden: impl Fn(TileIndex) -> u64,
     ) -> Learnt {
         let centre = sighting.centre();
         self.follow(centre);
@@ -221,8 +237,12 @@ impl Evidence {
             counts.set_least(bit);
         }
         self.strain.relax();
+        let mut disputed = 0;
         for at in sighting.tiles() {
-            let (free, blocked) = sighting.tile(at);
+            let (free, mut blocked) = sighting.tile(at);
+            if blocked != 0 {
+                blocked &= !hidden(at);
+            }
             if free | blocked == 0 {
                 continue;
             }
@@ -254,15 +274,18 @@ impl Evidence {
             counts.lower(against);
             let walls = towards & counts.at_least(margin);
             after = after
-                .with(walls & !before.planes()[2], Level::Wall)
+                .with(walls & !before.high(), Level::Wall)
                 .with(walls & before.at(Level::FreeAgain), Level::WallAgain);
             let gaps = against & counts.at_most(margin);
             after = after
                 .with(gaps & before.at(Level::Wall), Level::FreeAgain)
                 .with(gaps & before.at(Level::WallAgain), Level::FreeForGood)
                 .with(doubtful & free & !counts.at_least(1), Level::Free);
+            let walls = after.obstacle() & free & near(at, centre, model.flip_range);
+            disputed |= walls;
             learnt += map.join_tile(at, after);
         }
+        self.is_disputed = disputed != 0;
         learnt
     }
 

@@ -34,7 +34,8 @@
 //!
 //! Every tick lowers this, or a search or a wait goes on that ends by itself:
 //! - *Stopped, off the grid, or nothing seen yet*: nothing is decided.
-//! - *No frontier on the map*: it stops.
+//! - *No frontier on the map*: it stops, or waits 8 ticks at most since it last learnt
+//!   something, where a look contradicts a wall; or it visits what was told to be shut.
 //! - *Hints do not count any more* (`purse`): the far search begins again, once until new
 //!   cells fill the purse.
 //! - *The plan is dropped*: its goal was reached; or its goal or its next cell was set
@@ -132,7 +133,7 @@ use crate::planner::{Contact, Inspect, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::role::{self, Role};
-use crate::sight::{MAX_RADIUS, Sighting};
+use crate::sight::Sighting;
 use crate::tile::{TileIndex, TileSet};
 use crate::zeroed::Maybe;
 
@@ -259,6 +260,10 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     obstructed: u8,
     /// Ticks waited before such a step.
     vetoes: u8,
+    /// Ticks waited before a stop since something was learnt.
+    doubts: u8,
+    /// Whether others have told of a cell as a wall that was free, since it looked itself.
+    was_told_shut: bool,
     waiting: Maybe<Wait>,
     work: u32,
 }
@@ -307,6 +312,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             holds: 0,
             obstructed: 0,
             vetoes: 0,
+            doubts: 0,
+            was_told_shut: false,
             waiting: Maybe::Nothing,
             work: 0,
         }
@@ -360,6 +367,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.holds = 0;
         self.obstructed = 0;
         self.vetoes = 0;
+        self.doubts = 0;
+        self.was_told_shut = false;
         self.waiting = Maybe::Nothing;
         self.work = 0;
         Ok(())
@@ -373,6 +382,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.far_is_doubtful = true;
             self.around.aside.renew();
             self.evidence.renew();
+            self.doubts = 0;
             if learnt.opened > 0 {
                 self.around.keep_visits();
             }
@@ -387,6 +397,10 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             learnt += self.around.map.stand(position);
         }
         self.learn(learnt);
+        if learnt.closed > 0 {
+            self.evidence.dispute();
+            self.was_told_shut = true;
+        }
         learnt
     }
 
@@ -466,24 +480,18 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             .into_iter()
             .filter(|side| sighting.is_blocked(centre.step(*side)))
             .fold(0, |sides, side| sides | 1 << side as u8);
-        let idles = matches!(self.waiting.get(), Some(Wait::Look(_) | Wait::Obstructed));
-        let sensor = self.config.sensor;
-        let now = self.around.now;
-        let is_near = |body: &Cell| body.chebyshev(centre) <= u16::from(MAX_RADIUS);
-        let mut bodies = self.others.bodies(now).filter(is_near).peekable();
-        let map = &mut self.around.map;
+        let idles = matches!(
+            self.waiting.get(),
+            Some(Wait::Look(_) | Wait::Obstructed | Wait::Doubt)
+        );
         // A look for its own sake is taken as it is: a robot that is only pretended hides
         // nothing for long.
-        if !sensor.sees_robots || idles || bodies.peek().is_none() {
-            return self.evidence.observe(map, sighting, &sensor, idles);
-        }
-        let mut sighting = sighting.clone();
-        for body in bodies {
-            if sighting.is_blocked(body) {
-                sighting.forget(body);
-            }
-        }
-        self.evidence.observe(map, &sighting, &sensor, idles)
+        let (now, others) = (self.around.now, &self.others);
+        let hides = self.config.sensor.sees_robots && !idles;
+        let hidden = |at: TileIndex| if hides { others.bodies(at, now) } else { 0 };
+        let map = &mut self.around.map;
+        self.evidence
+            .observe(map, sighting, &self.config.sensor, idles, hidden)
     }
 
     /// Whether the step leads to where the last look saw something: the robot looks again
@@ -501,6 +509,17 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     /// Nothing is left: the robot stops, or on patrol looks at shut places again.
     fn finish(&mut self, stop: Stop) -> Action {
+        if stop.is_complete() && self.evidence.is_disputed() && self.doubts < MOST_VETOES {
+            self.doubts += 1;
+            return self.wait(Wait::Doubt);
+        }
+        if stop.is_complete() && core::mem::take(&mut self.was_told_shut) {
+            // What others call shut it has seen free: it goes and looks itself.
+            self.far.cancel();
+            if self.around.visit_shut_places() {
+                return self.wait(Wait::Search);
+            }
+        }
         let now = self.around.now;
         if self.config.patrol == 0
             || !stop.is_complete()

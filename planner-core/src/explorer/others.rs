@@ -8,6 +8,7 @@ use crate::cell::{Cell, Direction};
 use crate::list;
 use crate::map::Map;
 use crate::robot::{Activity, RobotId, Status};
+use crate::tile::TileIndex;
 
 /// Other robots that are remembered; of more, the nearest.
 pub const MAX_OTHERS: usize = 15;
@@ -27,11 +28,20 @@ impl Other {
         now.saturating_sub(self.heard_at) <= 1
     }
 
-    /// Where a sensor may have seen the robot a moment ago: on its cell, or a step away.
-    pub(crate) fn bodies(&self, now: u32) -> Option<[Cell; 5]> {
-        let [east, south, west, north] = Direction::ALL.map(|side| self.position.step(side));
-        let is_new = now.saturating_sub(self.heard_at) <= 2;
-        is_new.then_some([self.position, east, south, west, north])
+    /// The cells of a tile in which a sensor may have seen the robot a moment ago: its own,
+    /// and those a step away.
+    fn body(&self, at: TileIndex, now: u32) -> u64 {
+        let tiles = |of: i16, tile: u8| ((of >> 3) - i16::from(tile)).unsigned_abs();
+        let is_far = tiles(self.position.x, at.x).max(tiles(self.position.y, at.y)) > 1;
+        if is_far || now.saturating_sub(self.heard_at) > 2 {
+            return 0;
+        }
+        let sides = Direction::ALL.map(|side| self.position.step(side));
+        let cells = sides.into_iter().chain([self.position]);
+        cells
+            .filter_map(TileIndex::of)
+            .filter(|(tile, _)| *tile == at)
+            .fold(0, |cells, (_, bit)| cells | bit)
     }
 
     /// Where the robot is and where it is going: frontiers beside either are its own.
@@ -111,10 +121,12 @@ impl Others {
         self.heard().filter(|_| !self.purse.is_empty())
     }
 
-    /// Where robots may stand that were heard just now, stopped or not.
-    pub(crate) fn bodies(&self, now: u32) -> impl Iterator<Item = Cell> {
-        let bodies = self.list.iter().filter_map(move |other| other.bodies(now));
-        bodies.flatten()
+    /// The cells of a tile in which robots may be seen that were heard just now. Work: the
+    /// list once.
+    pub(crate) fn bodies(&self, at: TileIndex, now: u32) -> u64 {
+        self.list
+            .iter()
+            .fold(0, |cells, other| cells | other.body(at, now))
     }
 
     /// Whether the robot knows where every other one went that it has heard of.

@@ -780,3 +780,57 @@ fn a_robot_does_not_take_another_for_a_wall() {
     }
     assert!(robot.map().is_obstacle(other));
 }
+
+/// Walls that somebody forged around a robot, on every cell that it sees free.
+fn walled_in(robot: &mut Small, seen: &Sighting) {
+    let mut told = Map::<3, 3>::new(robot.map().extent()).unwrap();
+    let mut tiles = TileSet::new();
+    for cell in seen.free_cells() {
+        let (at, bit) = TileIndex::of(cell).unwrap();
+        told.join_tile(at, crate::map::Tile::seen(0, bit));
+        tiles.insert(at);
+    }
+    robot.join(&told, &tiles);
+}
+
+proptest! {
+    /// The worst places that are in sight: all of them, once, at any time. All is explored
+    /// all the same.
+    #[test]
+    fn false_walls_in_sight_cost_a_detour_at_most(
+        mut scene in scene(false),
+        sensor in prop_oneof![
+            Just(SensorModel::truthful()),
+            Just(SensorModel { flip_range: 15, ..SensorModel::lidar() }),
+        ],
+        at in 0u32..80,
+    ) {
+        scene.config.sensor = sensor;
+        let start = scene.start[0];
+        let mut robot = Small::new(scene.config, RobotId(0), scene.extent, start).unwrap();
+        let mut here = start;
+        for tick in 0..20_000 {
+            let seen = scene.look(here, Direction::East);
+            robot.observe(&seen);
+            if tick == at {
+                walled_in(&mut robot, &seen);
+            }
+            match robot.tick() {
+                Action::Move(step) => {
+                    here = here.step(step);
+                    robot.report(Motion::Moved);
+                }
+                Action::Wait => {}
+                Action::Stop(stop) if tick > at || stop.is_complete() => {
+                    prop_assert!(stop.is_complete(), "{}", stop);
+                    let missing = scene.reachable(start, |_| true);
+                    let missing = missing.into_iter().find(|cell| !robot.map().is_known(*cell));
+                    prop_assert_eq!(missing, None, "{}: {:?}", stop, robot.map());
+                    return Ok(());
+                }
+                Action::Stop(stop) => prop_assert!(false, "{}", stop),
+            }
+        }
+        prop_assert!(false, "it goes on and on");
+    }
+}

@@ -41,14 +41,17 @@ impl Level {
     ];
 }
 
-/// The [`Level`]s of 8×8 cells, a bit of the level a word.
+/// The [`Level`]s of 8×8 cells.
+///
+/// Three words, laid out for what is read most: which cells are free, which levels are 4
+/// and above, and a third bit that tells the rest apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tile {
-    low: u64,
-    mid: u64,
+    free: u64,
     high: u64,
+    rest: u64,
 }
 
 impl Tile {
@@ -60,86 +63,119 @@ impl Tile {
 
     /// From the bits of the levels: the words of bit 0, 1 and 2.
     pub const fn from_planes([low, mid, high]: [u64; 3]) -> Self {
-        Self { low, mid, high }
+        // Below 4, bit 1 says free; from 4 on, bit 0 does.
+        let swapped = (low ^ mid) & high;
+        Self {
+            free: mid ^ swapped,
+            high,
+            rest: low ^ swapped,
+        }
     }
 
     /// The bits of the levels: the words of bit 0, 1 and 2.
     pub const fn planes(self) -> [u64; 3] {
-        [self.low, self.mid, self.high]
+        let swapped = (self.free ^ self.rest) & self.high;
+        [self.rest ^ swapped, self.free ^ swapped, self.high]
     }
 
     /// Cells that are free and cells that are walls; what is both is a wall.
     pub const fn seen(free: u64, obstacle: u64) -> Self {
-        Self::from_planes([0, free & !obstacle, obstacle])
+        Self {
+            free: free & !obstacle,
+            high: obstacle,
+            rest: 0,
+        }
     }
 
     /// With these cells at that level, whatever they were.
     #[must_use]
     pub const fn with(self, cells: u64, level: Level) -> Self {
-        let level = level as u8;
+        let (free, high, rest) = level.bits();
         Self {
-            low: set(self.low, cells, level & 1 != 0),
-            mid: set(self.mid, cells, level & 2 != 0),
-            high: set(self.high, cells, level & 4 != 0),
+            free: set(self.free, cells, free),
+            high: set(self.high, cells, high),
+            rest: set(self.rest, cells, rest),
         }
     }
 
     /// Only these cells; the others are unknown.
     #[must_use]
     pub const fn only(self, cells: u64) -> Self {
-        Self::from_planes([self.low & cells, self.mid & cells, self.high & cells])
+        Self {
+            free: self.free & cells,
+            high: self.high & cells,
+            rest: self.rest & cells,
+        }
     }
 
     /// The cells at a level.
     pub const fn at(self, level: Level) -> u64 {
-        let level = level as u8;
-        same(self.low, level & 1 != 0)
-            & same(self.mid, level & 2 != 0)
-            & same(self.high, level & 4 != 0)
+        let (free, high, rest) = level.bits();
+        same(self.free, free) & same(self.high, high) & same(self.rest, rest)
     }
 
     /// The level of the cell with this bit number.
     pub fn level(self, bit: u32) -> Level {
         let bit = |word: u64| (word >> (bit & 63) & 1) as usize;
-        let level = bit(self.low) | bit(self.mid) << 1 | bit(self.high) << 2;
+        let [low, mid, high] = self.planes();
+        let level = bit(low) | bit(mid) << 1 | bit(high) << 2;
         Level::ALL.get(level).copied().unwrap_or_default()
     }
 
     /// Cells known: free or walls. Doubtful ones are not.
     pub const fn known(self) -> u64 {
-        self.mid | self.high
+        self.free | self.high
     }
 
     /// Cells known to be free.
     pub const fn free(self) -> u64 {
-        self.mid & !self.high | self.low & self.high
+        self.free
     }
 
     /// Cells known to be walls.
     pub const fn obstacle(self) -> u64 {
-        self.high & !self.low
+        self.high & !self.free
     }
 
     /// Free cells on which somebody has stood, or that were taken for walls before.
     pub const fn visited(self) -> u64 {
-        self.low & self.known()
+        self.free & (self.high | self.rest)
     }
 
     /// Cells seen blocked, but not often enough to believe it.
     pub const fn doubtful(self) -> u64 {
-        self.low & !self.known()
+        self.rest & !self.known()
+    }
+
+    /// Cells of level 4 and above.
+    pub(crate) const fn high(self) -> u64 {
+        self.high
     }
 
     /// The later level of the two for every cell.
     #[must_use]
     pub const fn joined(self, other: Self) -> Self {
-        let above_low = self.low & !other.low;
-        let above_mid = self.mid & !other.mid | !(self.mid ^ other.mid) & above_low;
-        let above = self.high & !other.high | !(self.high ^ other.high) & above_mid;
+        let ([a_low, a_mid, a_high], [b_low, b_mid, b_high]) = (self.planes(), other.planes());
+        let above = a_low & !b_low;
+        let above = a_mid & !b_mid | !(a_mid ^ b_mid) & above;
+        let above = a_high & !b_high | !(a_high ^ b_high) & above;
         Self {
-            low: self.low & above | other.low & !above,
-            mid: self.mid & above | other.mid & !above,
-            high: self.high | other.high,
+            free: self.free & above | other.free & !above,
+            high: a_high | b_high,
+            rest: self.rest & above | other.rest & !above,
+        }
+    }
+}
+
+impl Level {
+    /// The bits of a tile's three words.
+    const fn bits(self) -> (bool, bool, bool) {
+        let level = self as u8;
+        let (low, mid, high) = (level & 1 != 0, level & 2 != 0, level & 4 != 0);
+        if high {
+            (low, high, mid)
+        } else {
+            (mid, high, low)
         }
     }
 }

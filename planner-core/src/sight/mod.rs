@@ -91,16 +91,6 @@ impl Sighting {
         }
     }
 
-    /// Says nothing of a cell any more.
-    pub(crate) fn forget(&mut self, cell: Cell) {
-        if let Some((row, bit)) = self.place(cell)
-            && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get_mut(row))
-        {
-            *free &= !bit;
-            *blocked &= !bit;
-        }
-    }
-
     /// Whether the cell was seen free.
     pub fn is_free(&self, cell: Cell) -> bool {
         self.has(cell, &self.free)

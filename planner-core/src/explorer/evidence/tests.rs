@@ -155,7 +155,7 @@ proptest! {
                     || (cell.x % 7 == 3) != wrong[(cell.x * 31 + cell.y) as usize % 256]
             });
             naive.observe(&sighting, &model, idles, evidence.barren());
-            evidence.observe(&mut map, &sighting, &model, idles);
+            evidence.observe(&mut map, &sighting, &model, idles, |_| 0);
             for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
                 if EXTENT.contains(cell) {
                     prop_assert_eq!(map.level(cell), naive.level(cell), "{} from {},{}", cell, x, y);
@@ -181,7 +181,7 @@ proptest! {
             }
             evidence.tick();
             let sighting = look(cell, radius, blocked);
-            evidence.observe(&mut weighed, &sighting, &SensorModel::truthful(), false);
+            evidence.observe(&mut weighed, &sighting, &SensorModel::truthful(), false, |_| 0);
             taken.observe(&sighting);
             taken.stand(cell);
         }
@@ -199,7 +199,7 @@ fn seen(evidence: &mut Evidence, map: &mut Small, from: Cell, cell: Cell, blocke
         sighting.see_free(cell);
     }
     evidence.tick();
-    evidence.observe(map, &sighting, &SensorModel::rangers(), false);
+    evidence.observe(map, &sighting, &SensorModel::rangers(), false, |_| 0);
     map.level(cell)
 }
 
@@ -312,7 +312,7 @@ fn looks_that_contradict_the_map_for_long_are_told() {
                     is_wall(Cell::new(cell.x + off, cell.y)) != (is_wrong && cell != at)
                 });
                 evidence.tick();
-                evidence.observe(&mut map, &seen, &SensorModel::lidar(), false);
+                evidence.observe(&mut map, &seen, &SensorModel::lidar(), false, |_| 0);
                 assert!(is_lost || !evidence.is_lost(), "{noise} %, at {x}");
                 if is_lost && evidence.is_lost() {
                     return;

@@ -1,17 +1,19 @@
 //! What false looks, slipping poses, people and doors do to the explorer: false claims,
-//! runs that did not end, and ticks against the same worlds without any of it.
+//! runs that did not end, and ticks against the same worlds without any of it, for each
+//! preset of the sensor's model.
 //!
 //! `cargo run --release -p host-sim --example senses_table [-- --worlds 50 MAP…]`
 
 use std::error::Error;
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use host_sim::planners::PlannerKind;
 use host_sim::run::{Options, Outcome, run};
 use host_sim::scenario::grid::Scenario;
-use host_sim::scenario::{ErrorKind, MediumKind, Trouble};
+use host_sim::scenario::{ErrorKind, MediumKind, Preset, Trouble};
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, ReadOptions, Starts, World, generate};
 use rayon::prelude::*;
@@ -133,6 +135,19 @@ impl Sum {
     }
 }
 
+impl fmt::Display for Sum {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let runs = f64::from(self.runs.max(1));
+        let share = 100.0 * f64::from(self.false_claims) / runs;
+        let endless = match self.endless {
+            0 => String::new(),
+            endless => format!(" ({endless})"),
+        };
+        let ticks = (self.ticks / runs).exp();
+        write!(f, "{share:.1} %{endless} ×{ticks:.2}")
+    }
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments = Arguments::parse();
     let sites = sites(&arguments)?;
@@ -140,27 +155,22 @@ fn main() -> Result<(), Box<dyn Error>> {
         "False claims in {} runs, ×ticks; in brackets runs that did not end.\n",
         sites.len()
     );
-    println!("| condition | robots | truthful |\n|---|---:|---|");
+    let presets = Preset::value_variants();
+    let names: Vec<String> = presets.iter().map(Preset::to_string).collect();
+    println!("| condition | robots | {} |", names.join(" | "));
+    println!("|---|---:|{}", "---|".repeat(names.len()));
     for condition in conditions() {
         if !condition.name.contains(&arguments.only) {
             continue;
         }
         for &robots in &arguments.robots {
-            let sum = sites
-                .par_iter()
-                .map(|site| measure(site, &condition, robots))
-                .reduce(Sum::default, Sum::and);
-            let runs = f64::from(sum.runs.max(1));
-            let endless = match sum.endless {
-                0 => String::new(),
-                endless => format!(" ({endless})"),
-            };
-            println!(
-                "| {} | {robots} | {:.1} %{endless} ×{:.2} |",
-                condition.name,
-                100.0 * f64::from(sum.false_claims) / runs,
-                (sum.ticks / runs).exp(),
-            );
+            let cells = presets.iter().map(|&preset| {
+                let runs = sites.par_iter();
+                let sums = runs.map(|site| measure(site, &condition, preset, robots));
+                sums.reduce(Sum::default, Sum::and).to_string()
+            });
+            let cells = cells.collect::<Vec<_>>().join(" | ");
+            println!("| {} | {robots} | {cells} |", condition.name);
         }
     }
     Ok(())
@@ -188,8 +198,9 @@ fn sites(arguments: &Arguments) -> Result<Vec<Site>, Box<dyn Error>> {
     Ok(sites)
 }
 
-/// A run under the condition, against the same without trouble.
-fn measure(site: &Site, condition: &Condition, robots: usize) -> Sum {
+/// A run under the condition, against a truthful one without trouble. A lidar looks three
+/// times a step.
+fn measure(site: &Site, condition: &Condition, preset: Preset, robots: usize) -> Sum {
     let world = site.sensor.world();
     let starts = world.place(robots, &site.starts, false);
     let starts = starts.expect("cells may be shared");
@@ -198,7 +209,11 @@ fn measure(site: &Site, condition: &Condition, robots: usize) -> Sum {
         scenario.range = RANGE;
         scenario.conditions.seed = site.seed;
         if let Some(condition) = condition {
+            scenario.conditions.preset = preset;
             scenario.conditions.trouble = condition.trouble;
+            if preset == Preset::Lidar {
+                scenario.conditions.trouble.looks = 3;
+            }
             scenario.conditions.medium = condition.medium;
             scenario.conditions.loss = condition.loss;
         }

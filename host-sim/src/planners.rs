@@ -5,7 +5,7 @@ use std::fmt;
 use bridge::PlannerConfig;
 use clap::ValueEnum;
 use planner_core::ExtentError;
-use planner_core::explorer::{self, Explorer};
+use planner_core::explorer::{self, Explorer, SensorModel};
 use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::radio::LinkConfig;
 use planner_core::{AnyPlanner, Cell, Extent, RobotId};
@@ -50,6 +50,8 @@ pub struct Setup {
     pub start: Cell,
     /// How it uses the radio.
     pub link: LinkConfig,
+    /// What it takes its sensor for, if it [weighs looks](PlannerKind::weighs_looks).
+    pub sensor: SensorModel,
 }
 
 impl PlannerKind {
@@ -68,10 +70,15 @@ impl PlannerKind {
         }
     }
 
+    /// Whether it can take its sensor for one that errs.
+    pub fn weighs_looks(self) -> bool {
+        self == Self::Explorer
+    }
+
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
-        let Setup { link, .. } = setup;
+        let Setup { link, sensor, .. } = setup;
         let local_frontiers = |second_chance| {
             PlannerConfig::LocalFrontiers(local_frontiers::Config {
                 second_chance,
@@ -82,6 +89,7 @@ impl PlannerKind {
         match self {
             Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config {
                 link,
+                sensor,
                 ..explorer::Config::new()
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),
@@ -106,6 +114,7 @@ impl PlannerKind {
             extent,
             start,
             link,
+            ..
         } = setup;
         let rule: Box<dyn Rule> = match self {
             Self::Explorer | Self::LocalFrontiers | Self::LocalFrontiersSecondChance => {

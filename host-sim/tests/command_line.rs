@@ -336,6 +336,11 @@ fn bad_options_are_named() {
     bad(&["--false-frees=-1"], &["--false-frees", share]);
     bad(&["--misplaced", "often"], &["--misplaced", share]);
     bad(&["--error-kind", "wild"], &["--error-kind", "viewpoint"]);
+    bad(&["--preset", "sonar"], &["--preset", "rangers"]);
+    bad(
+        &["--preset=lidar", "--planner=minpos"],
+        &["--preset lidar", "minpos"],
+    );
     bad(&["--looks", "0"], &["--looks", "1..=16"]);
     bad(&["--people", "two"], &["--people"]);
     bad(&["--loss", "60"], &["--loss", "0 (nothing) to 1"]);

@@ -8,8 +8,9 @@ use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
 use host_sim::run::{self, Options, Outcome};
 use host_sim::scenario::grid::Scenario;
-use host_sim::scenario::{ErrorKind, MediumKind, Trouble};
-use host_sim::world::{Family, Starts, generate};
+use host_sim::scenario::{ErrorKind, MediumKind, Preset, Trouble};
+use host_sim::world::{Family, Starts, World, generate};
+use planner_core::{Cell, Extent};
 use proptest::prelude::*;
 
 fn scenario(trouble: Trouble) -> Scenario {
@@ -50,6 +51,57 @@ fn what_robots_get_wrong_is_counted() {
     assert!(opened.bumps > 0 && opened.violations.is_empty());
     let robots = &opened.robots;
     assert!(robots.iter().any(|robot| robot.cells_opened > 0));
+}
+
+#[test]
+fn a_claim_that_names_the_shut_place_is_no_false_one() {
+    let map = "\
+################
+#......#.......#
+#1.............#
+#......#.......#
+################
+";
+    let rows: Vec<&[u8]> = map.lines().map(str::as_bytes).collect();
+    let blocked = |cell: Cell| rows[cell.y as usize][cell.x as usize] == b'#';
+    let world = World::from_fn("rooms", Extent::new(16, 5), blocked).unwrap();
+    let world = Arc::new(world);
+    let claim = |shut: &str| {
+        let starts = vec![Cell::new(1, 2)];
+        let mut scenario = Scenario::new(world.clone(), starts, PlannerKind::Explorer);
+        scenario.range = 8;
+        scenario.conditions.faults.shut = vec![shut.parse().unwrap()];
+        let robot = run(&scenario).0.robots[0].clone();
+        assert!(
+            robot.stop.unwrap().is_complete() && robot.cells_missed > 0,
+            "{shut}"
+        );
+        robot
+    };
+    // Shut from the second look on, and never seen open.
+    let (seen, never) = (claim("7,2@1-4294967295"), claim("7,2"));
+    assert_eq!(seen.cells_unnamed, 0);
+    assert!(!seen.claims_falsely());
+    assert_eq!(never.cells_unnamed, never.cells_missed);
+    assert!(never.claims_falsely());
+}
+
+#[test]
+fn who_expects_errors_is_not_misled_by_a_few() {
+    let mut scenario = scenario(Trouble {
+        false_walls: 0.01,
+        false_frees: 0.01,
+        misplaced: 0.01,
+        ..Trouble::default()
+    });
+    assert!(run(&scenario).0.false_claims() > 0);
+    scenario.conditions.preset = Preset::Rangers;
+    let (outcome, _) = run(&scenario);
+    assert_eq!(outcome.false_claims(), 0);
+    assert!(outcome.ticks_to_stopped.is_some());
+    scenario.planner = PlannerKind::MinPos;
+    let error = scenario.check().unwrap_err().to_string();
+    assert!(error.starts_with("--preset rangers"), "{error}");
 }
 
 /// Each kind alone, and all at once.
@@ -144,11 +196,16 @@ fn misled() -> impl Strategy<Value = Scenario> {
         (0..Family::ALL.len(), 8u16..24, 8u16..24, any::<u64>()),
         (1usize..=4, 1u8..=8, any::<bool>()),
         (any::<bool>(), prop_oneof![Just(0.0), 0.0..0.9f64]),
-        trouble(),
+        (trouble(), prop::sample::select(Preset::value_variants())),
     )
         .prop_filter_map(
             "no such world",
-            |((family, width, height, seed), (robots, range, solid), (radio, loss), trouble)| {
+            |(
+                (family, width, height, seed),
+                (robots, range, solid),
+                (radio, loss),
+                (trouble, preset),
+            )| {
                 let world = generate(Family::ALL[family], width, height, seed).ok()?;
                 let starts = world.place(robots, &Starts::Random(seed), solid).ok()?;
                 let mut scenario = Scenario::new(Arc::new(world), starts, PlannerKind::Explorer);
@@ -158,6 +215,7 @@ fn misled() -> impl Strategy<Value = Scenario> {
                 conditions.seed = seed;
                 conditions.loss = loss;
                 conditions.trouble = trouble;
+                conditions.preset = preset;
                 conditions.max_ticks *= 10;
                 if radio {
                     conditions.medium = MediumKind::Radio;

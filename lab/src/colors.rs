@@ -13,6 +13,10 @@ pub struct Colors {
     pub free: Color32,
     /// Known obstacle.
     pub obstacle: Color32,
+    /// Seen blocked, and not believed yet.
+    pub doubtful: Color32,
+    /// Free, and taken for an obstacle before.
+    pub changed: Color32,
     /// Not known.
     pub unknown: Color32,
     /// An obstacle that nobody has seen.
@@ -60,6 +64,8 @@ impl Colors {
     pub const LIGHT: Self = Self {
         free: rgb(255, 255, 255),
         obstacle: rgb(64, 70, 80),
+        doubtful: rgb(176, 150, 204),
+        changed: rgb(150, 205, 240),
         unknown: rgb(205, 208, 214),
         hidden: rgb(158, 163, 172),
         unseen: rgb(228, 230, 234),
@@ -75,6 +81,8 @@ impl Colors {
     pub const DARK: Self = Self {
         free: rgb(72, 78, 90),
         obstacle: rgb(206, 211, 220),
+        doubtful: rgb(120, 92, 150),
+        changed: rgb(60, 120, 170),
         unknown: rgb(32, 34, 40),
         hidden: rgb(104, 109, 120),
         unseen: rgb(46, 50, 58),

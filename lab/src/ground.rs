@@ -3,6 +3,7 @@
 use egui::{Color32, ColorImage};
 use host_sim::record::grid::Record;
 use host_sim::run::Stepping;
+use planner_core::map::Level;
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, Extent};
 
@@ -65,6 +66,9 @@ enum Known {
     Unknown,
     Free,
     Obstacle,
+    Doubtful,
+    /// Free, and taken for an obstacle before.
+    FreeAgain,
 }
 
 /// Every cell of the watched world in its colour, as `subject` has it.
@@ -79,7 +83,7 @@ pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) 
     let at = |cell: Cell| known[cell.y as usize * width + cell.x as usize];
     let pixel = |cell| pixel(watch, subject, layers, colors, at, cell);
     let mut pixels: Vec<_> = cells(extent).map(pixel).collect();
-    let free = |cell: Cell| at(cell) == Known::Free;
+    let free = |cell: Cell| matches!(at(cell), Known::Free | Known::FreeAgain);
     if layers.owners && subject != Subject::World {
         for (pixel, owner) in pixels.iter_mut().zip(owners(watch, free)) {
             if let Some(owner) = owner.filter(|_| *pixel != colors.frontier) {
@@ -145,7 +149,8 @@ fn pixel(
 ) -> Color32 {
     let world = &watch.scenario().world;
     let is_frontier = || {
-        let beside = |next: Cell| world.extent().contains(next) && known(next) == Known::Unknown;
+        let is_open = |next| matches!(known(next), Known::Unknown | Known::Doubtful);
+        let beside = |next: Cell| world.extent().contains(next) && is_open(next);
         Direction::ALL.iter().any(|&way| beside(cell.step(way)))
     };
     let mistaken = |believed| mix(believed, colors.lost, 0.5);
@@ -157,6 +162,8 @@ fn pixel(
         (Known::Free, _) if layers.visited && watch.is_visited(cell) => colors.visited,
         (Known::Free, _) => colors.free,
         (Known::Obstacle, _) => colors.obstacle,
+        (Known::Doubtful, _) => colors.doubtful,
+        (Known::FreeAgain, _) => colors.changed,
         (Known::Unknown, Subject::World) if !world.is_free(cell) => colors.hidden,
         (Known::Unknown, Subject::World) if watch.reachable().contains(cell) => colors.unseen,
         (Known::Unknown, _) => colors.unknown,
@@ -177,14 +184,18 @@ fn of_robot(state: &dyn Stepping, robot: usize, extent: Extent) -> Vec<Known> {
     let mut known = vec![Known::Unknown; extent.cells() as usize];
     for at in tiles(extent) {
         let tile = state.tile(robot, at);
-        for bit in planner_core::tile::bits(tile.known()) {
-            let cell = at.cell(bit);
-            if extent.contains(cell) {
-                known[cell.y as usize * width + cell.x as usize] = match tile.obstacle() >> bit & 1
-                {
-                    1 => Known::Obstacle,
-                    _ => Known::Free,
-                };
+        let again = tile.at(Level::FreeAgain) | tile.at(Level::FreeForGood);
+        let kinds = [
+            (tile.doubtful(), Known::Doubtful),
+            (tile.free(), Known::Free),
+            (tile.obstacle(), Known::Obstacle),
+            (again, Known::FreeAgain),
+        ];
+        for (cells, kind) in kinds {
+            for cell in planner_core::tile::bits(cells).map(|bit| at.cell(bit)) {
+                if extent.contains(cell) {
+                    known[cell.y as usize * width + cell.x as usize] = kind;
+                }
             }
         }
     }

@@ -271,7 +271,7 @@ fn cell(text: &str) -> Option<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host_sim::scenario::{AirFaults, ErrorKind, Faults, Reach, Trouble};
+    use host_sim::scenario::{AirFaults, ErrorKind, Faults, Preset, Reach, Trouble};
     use planner_core::Extent;
 
     fn unusual() -> Setup {
@@ -325,6 +325,7 @@ mod tests {
                     see_robots: true,
                     looks: 3,
                 },
+                preset: Preset::Rangers,
             },
         }
     }
@@ -379,7 +380,7 @@ mod tests {
         assert!(command.ends_with(
             "explore rooms-7.txt --planner minpos --robots 4 --start corner --range 6 --solid \
              --sync 3 --byte-budget 30 --loss 0.25 --radio-range 9 --duplicate 0.5 --delay 2 \
-             --corrupt 0.125 --seed 5 --max-ticks 900 --forge 2:goal --partition 5-20:2 \
+             --corrupt 0.125 --seed 5 --preset rangers --max-ticks 900 --forge 2:goal --partition 5-20:2 \
              --kill 1@40 --late 3@12 --restart 0@60 --resume 2@90 --close 4,5@9-20 --shut 5,5@3-8 \
              --blind 6,7 --sensor-fails 1@30 --pose-lost 0@5-9 --false-walls 0.01 --false-frees 0.02 \
              --error-kind far --misplaced 0.03 --drift 200 --people 2 --doors 6 --see-robots \

@@ -12,7 +12,7 @@ use host_sim::experiments::{
     markdown, to_csv,
 };
 use host_sim::planners::PlannerKind;
-use host_sim::scenario::{MediumKind, Trouble, TroubleArgs, parse_share};
+use host_sim::scenario::{MediumKind, Preset, Trouble, TroubleArgs, parse_share};
 use host_sim::world::{Family, ReadOptions, Recipe, Scale, World};
 use indicatif::{ProgressBar, ProgressStyle};
 use planner_core::Extent;
@@ -92,6 +92,9 @@ pub(crate) struct Compare {
     /// No progress bar.
     #[arg(long)]
     quiet: bool,
+    /// What the explorer takes its sensors for.
+    #[arg(long, value_name = "NAME", default_value = "truthful")]
+    preset: Preset,
     #[command(flatten)]
     trouble: TroubleArgs,
 }
@@ -197,6 +200,7 @@ impl Compare {
             losses: self.loss.clone(),
             ranges: self.range.clone(),
             trouble: self.trouble.clone().over(Trouble::default()),
+            preset: self.preset,
             seed: self.seed,
         })
     }

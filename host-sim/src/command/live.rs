@@ -9,8 +9,8 @@ use std::time::Duration;
 use clap::Args;
 use host_sim::live::{self, Event, RobotOptions, Server, WorldOptions};
 use host_sim::planners::PlannerKind;
-use host_sim::scenario::LinkArgs;
 use host_sim::scenario::grid::default_max_ticks;
+use host_sim::scenario::{LinkArgs, Preset};
 use host_sim::world::{self, ReadOptions};
 
 use super::{Done, tell_notes};
@@ -63,6 +63,9 @@ pub(crate) struct Robot {
     /// What decides.
     #[arg(long, value_name = "NAME", default_value = "explorer")]
     planner: PlannerKind,
+    /// What it takes its sensor for: truthful, lidar or rangers. The explorer's alone.
+    #[arg(long, value_name = "NAME", default_value = "truthful")]
+    preset: Preset,
     #[command(flatten)]
     link: LinkArgs,
 }
@@ -126,6 +129,7 @@ impl Robot {
             listen,
             peers,
             link: self.link.link(),
+            preset: self.preset,
         })?;
         println!("{}", serde_json::to_string(&report)?);
         Ok(match report.stop {

@@ -104,10 +104,13 @@ fn doubts(robot: &RobotSummary) -> Vec<String> {
         ..
     } = robot.hearsay;
     let mut doubts = Vec::new();
+    if robot.is_lost {
+        doubts.push("is lost: what it sees contradicts its map".into());
+    }
     if robot.claims_falsely {
         doubts.push(format!(
             "claims falsely: {} cells that it could reach are not on its map",
-            robot.cells_missed
+            robot.cells_unnamed
         ));
     }
     if robot.cells_closed + robot.cells_opened > 0 {

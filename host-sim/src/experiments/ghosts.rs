@@ -5,6 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use planner_core::RobotId;
+use planner_core::explorer::SensorModel;
 use planner_core::radio::LinkConfig;
 
 use crate::fleet::{Fleet, Rules};
@@ -95,6 +96,7 @@ fn explore(
             extent,
             start,
             link: LinkConfig::new(),
+            sensor: SensorModel::truthful(),
         };
         PlannerKind::Explorer
             .build(setup)

@@ -128,6 +128,7 @@ fn columns(rows: &[Row]) -> Vec<(&'static str, Column)> {
         ("loss", real(|row| row.loss)),
         ("range", integer(|row| row.range.into())),
         ("trouble", text(|row| row.trouble.clone())),
+        ("preset", text(|row| row.preset.to_string())),
         ("seed", integer(|row| row.seed as i64)),
         (
             "complete",

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::row::Key;
 use crate::planners::PlannerKind;
 use crate::scenario::grid::Scenario;
-use crate::scenario::{MediumKind, Trouble};
+use crate::scenario::{MediumKind, Preset, Trouble};
 use crate::world::{Recipe, Starts, World, WorldError};
 
 /// Every combination of these is one run.
@@ -36,6 +36,8 @@ pub struct Plan {
     pub ranges: Vec<u8>,
     /// How the worlds mislead robots.
     pub trouble: Trouble,
+    /// What the explorer takes its sensors for.
+    pub preset: Preset,
     /// Seed of placings, losses and trouble.
     pub seed: u64,
 }
@@ -89,6 +91,8 @@ pub struct Setup {
     pub range: u8,
     /// How the world misleads robots.
     pub trouble: Trouble,
+    /// What the explorer takes its sensors for.
+    pub preset: Preset,
     /// The plan's seed.
     pub seed: u64,
 }
@@ -120,6 +124,7 @@ impl Plan {
                                 loss,
                                 range,
                                 trouble: self.trouble,
+                                preset: self.preset,
                                 seed: self.seed,
                             }));
                         }
@@ -193,6 +198,9 @@ impl Setup {
         scenario.conditions.sync = self.sync;
         scenario.conditions.loss = self.loss;
         scenario.conditions.trouble = self.trouble;
+        if self.planner.weighs_looks() {
+            scenario.conditions.preset = self.preset;
+        }
         scenario.conditions.seed = self.seed + u64::from(self.start);
         Ok(scenario)
     }

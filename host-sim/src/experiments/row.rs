@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::plan::{Place, Setup, Site};
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome};
-use crate::scenario::MediumKind;
+use crate::scenario::{MediumKind, Preset};
 
 /// A run and its metrics, in the column names of the tables.
 ///
@@ -41,6 +41,8 @@ pub struct Row {
     pub range: u8,
     /// How the world misled robots: the options that differ from none.
     pub trouble: String,
+    /// What the explorer took its sensors for.
+    pub preset: Preset,
     /// Seed of the plan.
     pub seed: u64,
     /// Whether every reachable cell was seen by somebody.
@@ -106,6 +108,7 @@ pub struct Key {
     loss: u64,
     range: u8,
     trouble: String,
+    preset: Preset,
     seed: u64,
 }
 
@@ -125,6 +128,7 @@ impl Key {
             loss: setup.loss.to_bits(),
             range: setup.range,
             trouble: setup.trouble.to_string(),
+            preset: setup.preset,
             seed: setup.seed,
         }
     }
@@ -210,6 +214,7 @@ impl Row {
             loss: setup.loss,
             range: setup.range,
             trouble: setup.trouble.to_string(),
+            preset: setup.preset,
             seed: setup.seed,
             complete: outcome.is_complete(),
             false_claims: outcome.false_claims() as u32,
@@ -260,6 +265,7 @@ impl Row {
             loss: self.loss.to_bits(),
             range: self.range,
             trouble: self.trouble.clone(),
+            preset: self.preset,
             seed: self.seed,
         }
     }

@@ -7,6 +7,7 @@ use distrs::StudentsT;
 use super::row::{Key, Metric, Row};
 use crate::draw::chart::Point;
 use crate::planners::PlannerKind;
+use crate::scenario::Preset;
 
 /// A mean and its 95 % confidence interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,7 +107,7 @@ pub struct Comparison {
 }
 
 /// Runs under different conditions are never thrown together.
-#[derive(Clone, Debug, PartialEq, PartialOrd)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Conditions {
     /// Sensor range in cells.
     pub range: u8,
@@ -114,6 +115,8 @@ pub struct Conditions {
     pub sync: u32,
     /// Share of messages lost.
     pub loss: f64,
+    /// What the explorer took its sensors for.
+    pub preset: Preset,
     /// How the world misled robots; empty: not.
     pub trouble: String,
 }
@@ -124,6 +127,7 @@ impl Conditions {
             range: row.range,
             sync: row.sync,
             loss: row.loss,
+            preset: row.preset,
             trouble: row.trouble.clone(),
         }
     }

@@ -5,6 +5,7 @@ use std::fmt::{Display, Write};
 use super::row::Metric;
 use super::statistics::{Comparison, Conditions, Interval, in_order};
 use crate::planners::PlannerKind;
+use crate::scenario::Preset;
 
 /// Comma-separated values, row by row.
 pub(super) struct Csv(csv::Writer<Vec<u8>>);
@@ -37,10 +38,14 @@ pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metr
         let title = metric.title();
         let _ = writeln!(
             text,
-            "## Range {}, sync {}, loss {}{}: {title}\n",
+            "## Range {}, sync {}, loss {}{}{}: {title}\n",
             conditions.range,
             conditions.sync,
             conditions.loss,
+            match conditions.preset {
+                Preset::Truthful => String::new(),
+                preset => format!(", {preset}"),
+            },
             match conditions.trouble.as_str() {
                 "" => String::new(),
                 trouble => format!(", {trouble}"),
@@ -143,7 +148,7 @@ fn cell(interval: Option<Interval>, digits: usize) -> String {
 /// One line for each comparison, numbers in full.
 pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
     let mut csv = Csv::new(
-        "metric,range,sync,loss,trouble,planner,family,robots,runs,incomplete,false_claims,\
+        "metric,range,sync,loss,preset,trouble,planner,family,robots,runs,incomplete,false_claims,\
          ticks,ticks_low,ticks_high,pairs,ratio,ratio_low,ratio_high",
     );
     for row in comparisons {
@@ -151,6 +156,7 @@ pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
             range,
             sync,
             loss,
+            preset,
             trouble,
         } = &row.conditions;
         let robots = row.robots.map_or("all".into(), |robots| robots.to_string());
@@ -161,6 +167,7 @@ pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
             range,
             sync,
             loss,
+            preset,
             trouble,
             &row.planner,
             &row.family.as_deref().unwrap_or("all"),

@@ -6,7 +6,7 @@ use planner_core::Extent;
 use super::figures::{Drawn, Effort, figures, measure, page};
 use super::*;
 use crate::planners::PlannerKind::{Closest, Explorer, MinPos};
-use crate::scenario::{MediumKind, Trouble};
+use crate::scenario::{MediumKind, Preset, Trouble};
 use crate::world::{Family, ReadOptions, Recipe, World, paper};
 
 fn plan() -> Plan {
@@ -22,6 +22,7 @@ fn plan() -> Plan {
         syncs: vec![1, 20],
         losses: vec![0.0, 0.5],
         trouble: Trouble::default(),
+        preset: Preset::default(),
         ranges: vec![3],
         seed: 4,
     }

@@ -13,6 +13,7 @@ use super::line::{Line, LineError};
 use super::protocol::{FromRobot, FromWorld, go};
 use crate::excerpt::excerpt;
 use crate::planners::{PlannerKind, Setup};
+use crate::scenario::Preset;
 
 /// Longest silence of the world.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -34,6 +35,8 @@ pub struct RobotOptions {
     pub peers: Vec<SocketAddr>,
     /// How it uses the radio.
     pub link: LinkConfig,
+    /// What it takes its sensor for, if its planner weighs looks.
+    pub preset: Preset,
 }
 
 /// What a robot came to.
@@ -170,6 +173,7 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
                 extent: place.extent,
                 start: place.start,
                 link: options.link,
+                sensor: options.preset.model(),
             })
             .map_err(|error| LiveError::Place {
                 address: options.world,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use planner_core::explorer::SensorModel;
 use planner_core::radio::LinkConfig;
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Extent, Map, RobotId, Status, TileSet};
@@ -87,7 +88,7 @@ proptest! {
         let fleet = |medium| {
             let extent = world.extent();
             let planners = Box::new(move |id, start| {
-                planner.build(Setup { id, extent, start, link: LinkConfig::new() }).unwrap()
+                planner.build(Setup { id, extent, start, link: LinkConfig::new(), sensor: SensorModel::truthful() }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
             Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), planners, &starts)
@@ -197,6 +198,7 @@ fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
             extent,
             start,
             link,
+            sensor: SensorModel::truthful(),
         };
         PlannerKind::Explorer.build(setup).unwrap()
     });

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use planner_core::radio::Hearsay;
-use planner_core::{Cell, Direction, Extent, Map};
+use planner_core::{Cell, Direction, Map};
 
+use super::claims::wrong;
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
 use crate::fleet::Fleet;
@@ -13,7 +14,7 @@ use crate::robot::{Deed, Robot, Sent};
 use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::sensor::Sensor;
-use crate::world::{Reachable, World};
+use crate::world::Reachable;
 
 /// What is written down while a run goes on.
 pub(super) struct Book {
@@ -45,6 +46,7 @@ impl Book {
                     blocked_steps: 0,
                     cells_known: 0,
                     cells_missed: 0,
+                    cells_unnamed: 0,
                     cells_closed: 0,
                     cells_opened: 0,
                     cells_unheard: 0,
@@ -52,6 +54,7 @@ impl Book {
                     sent: Sent::default(),
                     stop: None,
                     alive: true,
+                    is_lost: false,
                     hearsay: Hearsay::default(),
                 };
                 robots
@@ -145,12 +148,15 @@ impl Book {
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
+            noted.is_lost = robot.planner.is_lost();
             noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
-            (noted.cells_missed, noted.cells_closed) =
-                missed(&scenario.world, &self.reachable, robot, start);
-            noted.cells_opened = opened(&scenario.world, robot.planner.map());
+            let wrong = wrong(&scenario.world, &self.reachable, robot, start);
+            noted.cells_missed = wrong.missed;
+            noted.cells_unnamed = wrong.unnamed;
+            noted.cells_closed = wrong.closed;
+            noted.cells_opened = wrong.opened;
         }
         outcome
     }
@@ -164,32 +170,6 @@ impl Book {
         let trace = self.records.map(|records| Trace::new(scenario, records));
         (outcome, trace)
     }
-}
-
-/// Cells that `robot` could reach and does not know, and those that it believes blocked.
-fn missed<const TW: usize, const TH: usize>(
-    world: &World,
-    all: &Reachable,
-    robot: &Robot<TW, TH>,
-    start: Cell,
-) -> (u32, u32) {
-    let map = robot.planner.map();
-    if all.cells().all(|cell| map.is_free(cell)) {
-        return (0, 0);
-    }
-    let own = world.reachable(&[start]);
-    let count = |is_so: &dyn Fn(Cell) -> bool| own.cells().filter(|&cell| is_so(cell)).count();
-    let missed = count(&|cell| !map.is_known(cell));
-    let closed = count(&|cell| map.is_obstacle(cell));
-    (missed as u32, closed as u32)
-}
-
-/// Obstacles that are free on a map.
-fn opened<const TW: usize, const TH: usize>(world: &World, map: &Map<TW, TH>) -> u32 {
-    let Extent { width, height } = world.extent();
-    let cells = (0..height as i16).flat_map(|y| (0..width as i16).map(move |x| Cell::new(x, y)));
-    let is_opened = |&cell: &Cell| !world.is_free(cell) && map.is_free(cell);
-    cells.filter(is_opened).count() as u32
 }
 
 /// Robot by robot, the cells that it lacks and another one alive knows.

@@ -131,6 +131,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
         seed: scenario.conditions.seed,
     };
     let link = scenario.conditions.link();
+    let sensor_model = scenario.conditions.preset.model();
     let (host, kind) = (host.clone(), scenario.planner);
     let extent = scenario.world.extent();
     // Robots that work by marks share them, and meet where the first one starts.
@@ -148,6 +149,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
             extent,
             start,
             link,
+            sensor: sensor_model,
         };
         host.planner(kind, setup)
     });

@@ -2,6 +2,7 @@
 //! of world. What stands here is of grids.
 
 mod book;
+mod claims;
 mod grid;
 pub mod heights;
 mod outcome;

@@ -47,6 +47,10 @@ pub struct RobotOutcome {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Those of them that none of the [shut places](planner_core::map::Shut::places) that
+    /// the robot names leads to: by its map it can get neither to them nor to any cell
+    /// through which they could be reached from such a place.
+    pub cells_unnamed: u32,
     /// Cells that it could reach and that are obstacles on its own map.
     pub cells_closed: u32,
     /// Obstacles that are free on its own map.
@@ -61,16 +65,19 @@ pub struct RobotOutcome {
     pub stop: Option<Stop>,
     /// Whether it lived to the end of the run.
     pub alive: bool,
+    /// Whether what it sees contradicts its map in the end, as far as its planner tells.
+    pub is_lost: bool,
     /// What it had from others, and what spoke against them.
     pub hearsay: Hearsay,
 }
 
 impl RobotOutcome {
     /// Whether it lives and says in the end that everything that it can reach is known,
-    /// while a cell that it could reach, with every door open and nobody about, is not.
+    /// while a cell that it could reach, with every door open and nobody about, is not, and
+    /// no shut place that it names leads there.
     pub fn claims_falsely(&self) -> bool {
         let says_complete = self.stop.is_some_and(|stop| stop.is_complete());
-        self.alive && says_complete && self.cells_missed > 0
+        self.alive && says_complete && self.cells_unnamed > 0
     }
 }
 

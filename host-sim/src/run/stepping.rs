@@ -98,6 +98,10 @@ pub struct Seen {
     pub known_cells: u32,
     /// Frontier cells on its map.
     pub frontiers: u32,
+    /// Cells that were free on its map and became walls.
+    pub shut_cells: u32,
+    /// Whether its looks contradict its map.
+    pub is_lost: bool,
 }
 
 /// A [`Running`] of any size. Robots are named by index, which is their id.
@@ -165,6 +169,8 @@ impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
             plan: role.map(|role| (role.remaining(), role.changes())),
             known_cells: map.known_cells(),
             frontiers: map.frontiers(),
+            shut_cells: map.shut().cells(),
+            is_lost: robot.planner.is_lost(),
         }
     }
 

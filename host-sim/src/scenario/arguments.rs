@@ -5,7 +5,7 @@ use clap::{Args, Command, FromArgMatches};
 use planner_core::radio::{Key, LinkConfig};
 
 use super::{
-    AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, Partition, Reach,
+    AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, Partition, Preset, Reach,
     RobotSpan, ScenarioError, TroubleArgs, key,
 };
 
@@ -114,6 +114,10 @@ pub struct ConditionsArgs {
     /// again.
     #[arg(long, value_name = "ROBOT@FROM-UNTIL")]
     pose_lost: Vec<RobotSpan>,
+    /// What robots take their sensors for: truthful (always right), lidar (errors come and
+    /// go) or rangers (errors hang on the place). The explorer's alone. Default: truthful.
+    #[arg(long, value_name = "NAME")]
+    preset: Option<Preset>,
     #[command(flatten)]
     trouble: TroubleArgs,
 }
@@ -145,6 +149,7 @@ impl ConditionsArgs {
             max_ticks,
             faults,
             trouble,
+            preset,
         } = conditions;
         let AirFaults {
             reach,
@@ -188,6 +193,7 @@ impl ConditionsArgs {
         sensor_failures.extend(self.sensor_fails);
         lost_poses.extend(self.pose_lost);
         *trouble = self.trouble.over(*trouble);
+        replace(preset, self.preset);
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
             _ => Ok(()),
@@ -231,6 +237,7 @@ impl Conditions {
             max_ticks,
             faults,
             trouble,
+            preset,
         } = self;
         let AirFaults {
             reach,
@@ -269,6 +276,7 @@ impl Conditions {
         say("delay", *delay != air.delay, delay);
         say("corrupt", *corruption != air.corruption, corruption);
         say("seed", *seed != usual.seed, seed);
+        say("preset", *preset != usual.preset, preset);
         say("max-ticks", *max_ticks != usual.max_ticks, max_ticks);
         fn all<T: ToString>(
             name: &'static str,

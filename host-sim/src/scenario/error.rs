@@ -4,6 +4,7 @@ use planner_core::survey::SetupError;
 use planner_core::{Cell, Extent, ExtentError};
 use thiserror::Error;
 
+use super::Preset;
 use crate::planners::PlannerKind;
 use crate::sensor::ALL_AROUND;
 
@@ -36,6 +37,13 @@ pub enum ScenarioError {
          degrees, not {fov}; the explorer turns it"
     )]
     NeverTurns { planner: PlannerKind, fov: u16 },
+    #[error(
+        "--preset {preset}: planner {planner} takes every sensor for truthful; the explorer does not"
+    )]
+    OnlyTruthful {
+        planner: PlannerKind,
+        preset: Preset,
+    },
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start { robot: usize, start: Cell },
     #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use planner_core::{Cell, sight};
 
-use super::{Conditions, ScenarioError};
+use super::{Conditions, Preset, ScenarioError};
 use crate::planners::PlannerKind;
 use crate::sensor::{ALL_AROUND, Sensor};
 use crate::world::{Reachable, World};
@@ -65,6 +65,13 @@ impl Scenario {
             return Err(ScenarioError::NeverTurns {
                 planner: self.planner,
                 fov: self.fov,
+            });
+        }
+        let preset = self.conditions.preset;
+        if preset != Preset::Truthful && !self.planner.weighs_looks() {
+            return Err(ScenarioError::OnlyTruthful {
+                planner: self.planner,
+                preset,
             });
         }
         self.check_fault_cells()?;

@@ -18,7 +18,7 @@ pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
-pub use trouble::{ErrorKind, Trouble, TroubleArgs};
+pub use trouble::{ErrorKind, Preset, Trouble, TroubleArgs};
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.
 const FLOWN_BYTE_BUDGET: u16 = 550;
@@ -54,6 +54,13 @@ pub struct Conditions {
     /// How the world misleads robots.
     #[serde(default, skip_serializing_if = "Trouble::is_none")]
     pub trouble: Trouble,
+    /// What robots take their sensors for.
+    #[serde(default, skip_serializing_if = "is_usual")]
+    pub preset: Preset,
+}
+
+fn is_usual(preset: &Preset) -> bool {
+    *preset == Preset::default()
 }
 
 const fn every_tick() -> u32 {
@@ -75,6 +82,7 @@ impl Conditions {
             max_ticks,
             faults: Faults::default(),
             trouble: Trouble::default(),
+            preset: Preset::default(),
         }
     }
 
@@ -159,6 +167,7 @@ impl Conditions {
         let of_grids = [
             ("close", !faults.closures.is_empty()),
             ("shut", !faults.shut.is_empty()),
+            ("preset", !is_usual(&self.preset)),
             ("blind", !faults.blind.is_empty()),
             ("sensor-fails", !faults.sensor_failures.is_empty()),
             ("pose-lost", !faults.lost_poses.is_empty()),

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use clap::{Args, ValueEnum};
+use planner_core::explorer::SensorModel;
 use serde::{Deserialize, Serialize};
 
 use super::{ScenarioError, check_share, parse_share};
@@ -76,6 +77,38 @@ impl fmt::Display for ErrorKind {
     }
 }
 
+/// What a robot takes its sensor for: names a [`SensorModel`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// Always right.
+    #[default]
+    Truthful,
+    /// Errors that come and go, three looks or more a step.
+    Lidar,
+    /// Errors that hang on the place, one look a step.
+    Rangers,
+}
+
+impl Preset {
+    /// The model of this name.
+    pub fn model(self) -> SensorModel {
+        match self {
+            Self::Truthful => SensorModel::truthful(),
+            Self::Lidar => SensorModel::lidar(),
+            Self::Rangers => SensorModel::rangers(),
+        }
+    }
+}
+
+/// The name used on the command line, for example `rangers`.
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.to_possible_value().expect("no preset is hidden");
+        f.write_str(value.get_name())
+    }
+}
+
 impl Trouble {
     /// Whether the world does not mislead, and robots look once a tick.
     pub fn is_none(&self) -> bool {
@@ -139,15 +172,17 @@ impl Trouble {
     }
 }
 
-/// What differs from no trouble, as options without their dashes: `false-walls 0.01 people
-/// 2`. Empty without trouble.
+/// What differs from no trouble, as options without their dashes: `false-walls 0.01,
+/// people 2`. Empty without trouble.
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let settings = self.settings(&Self::default());
-        let words = settings
-            .iter()
-            .map(|(name, value)| format!("{name} {value}"));
-        f.write_str(words.collect::<Vec<_>>().join(" ").trim_end())
+        let word = |(name, value): &(&str, String)| match value.as_str() {
+            "" => (*name).to_owned(),
+            value => format!("{name} {value}"),
+        };
+        let words: Vec<String> = settings.iter().map(word).collect();
+        f.write_str(&words.join(", "))
     }
 }
 

@@ -60,6 +60,8 @@ pub struct RobotSummary {
     pub cells_known: u32,
     /// Cells that it could reach and that its own map lacks.
     pub cells_missed: u32,
+    /// Those of them that no shut place leads to that it names.
+    pub cells_unnamed: u32,
     /// Cells that it could reach and that are obstacles on its own map.
     pub cells_closed: u32,
     /// Obstacles that are free on its own map.
@@ -81,6 +83,8 @@ pub struct RobotSummary {
     pub claims_falsely: bool,
     /// Whether it lived to the end of the run.
     pub alive: bool,
+    /// Whether what it sees contradicts its map in the end, as far as its planner tells.
+    pub is_lost: bool,
     /// What it had from others, and what spoke against them.
     pub hearsay: Hearsay,
 }
@@ -134,6 +138,7 @@ impl RobotSummary {
             blocked_steps: robot.blocked_steps,
             cells_known: robot.cells_known,
             cells_missed: robot.cells_missed,
+            cells_unnamed: robot.cells_unnamed,
             cells_closed: robot.cells_closed,
             cells_opened: robot.cells_opened,
             cells_unheard: robot.cells_unheard,
@@ -144,6 +149,7 @@ impl RobotSummary {
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             claims_falsely: robot.claims_falsely(),
             alive: robot.alive,
+            is_lost: robot.is_lost,
             hearsay: robot.hearsay,
         }
     }

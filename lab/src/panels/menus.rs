@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use egui::{Button, CollapsingHeader, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
 use host_sim::planners::PlannerKind;
 use host_sim::scenario::heights::Planner;
-use host_sim::scenario::{Conditions, ErrorKind, Faults, MediumKind, Reach, Trouble};
+use host_sim::scenario::{Conditions, ErrorKind, Faults, MediumKind, Preset, Reach, Trouble};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
@@ -49,6 +49,12 @@ impl App {
         radio(ui, &mut setup.conditions);
         CollapsingHeader::new("A world that misleads")
             .show(ui, |ui| trouble(ui, &mut setup.conditions.trouble));
+        if setup.planner.weighs_looks() {
+            let preset = &mut setup.conditions.preset;
+            choice(ui, "sensor taken for", preset, Preset::value_variants());
+        } else {
+            setup.conditions.preset = Preset::default();
+        }
         if (&setup, self.rival) != (&before.0, before.1) {
             if !self.set(setup) {
                 self.rival = before.1;

@@ -72,6 +72,12 @@ impl App {
             }
             rows.push(("cells known", seen.known_cells.to_string()));
             rows.push(("frontier cells", seen.frontiers.to_string()));
+            if seen.shut_cells > 0 {
+                rows.push(("cells that were shut", seen.shut_cells.to_string()));
+            }
+            if seen.is_lost {
+                rows.push(("lost", "what it sees contradicts its map".into()));
+            }
             kills = seen.alive && !watch.is_replay();
             let stopped = seen.step.map(|step| matches!(step.deed, Deed::Stopped(_)));
             goes_on = kills && stopped == Some(true);

@@ -6,7 +6,7 @@ use crate::experiments::{Place, Plan, Site};
 use crate::planners::PlannerKind::{
     self, Bmilrv, Closest, Explorer, Greedy, LocalFrontiers, LocalFrontiersSecondChance, MinPos,
 };
-use crate::scenario::{MediumKind, Trouble};
+use crate::scenario::{MediumKind, Preset, Trouble};
 use crate::world::{World, paper};
 
 /// Seed of the labyrinths in `fixtures/maps`, and of all figures.
@@ -63,6 +63,7 @@ pub fn figures(effort: Effort, hospital: Option<Arc<World>>) -> Vec<Figure> {
         syncs: vec![1],
         losses: vec![0.0],
         trouble: Trouble::default(),
+        preset: Preset::default(),
         ranges: vec![5],
         seed: SEED,
     };

@@ -30,6 +30,7 @@ pub mod planners;
 pub mod record;
 pub mod robot;
 pub mod run;
+pub mod scans;
 pub mod scenario;
 pub mod scene;
 pub mod senses;

@@ -32,6 +32,9 @@ enum Command {
     ///
     /// Exit status: 0 every column was seen, 1 something was left, 2 bad input.
     Survey(command::Survey),
+    /// Feed logs of real scans through a planner's map; draw what it believes beside the
+    /// vote of all beams.
+    ReplayScans(command::ReplayScans),
     /// Write a map that is made from a seed.
     Generate(command::Generate),
     /// Serve a map to robots that are processes of their own.
@@ -56,6 +59,7 @@ fn main() -> ExitCode {
         Command::Compare(compare) => compare.run(),
         Command::Figures(figures) => figures.run(),
         Command::Survey(survey) => survey.run(),
+        Command::ReplayScans(replay) => replay.run(),
         Command::Generate(generate) => generate.run(),
         Command::World(world) => world.run(),
         Command::Robot(robot) => robot.run(),

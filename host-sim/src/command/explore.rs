@@ -8,10 +8,12 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw::{self, Coverage};
+use host_sim::files;
 use host_sim::measured::Measured;
 use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
 use host_sim::run::{self, Options, Outcome, Progress};
+use host_sim::scans::Laser;
 use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{ConditionsArgs, MediumKind};
 use host_sim::sensor::ALL_AROUND;
@@ -58,6 +60,11 @@ pub(crate) struct Explore {
     /// Maps with a resolution: side of a cell in metres.
     #[arg(long, value_name = "METRES")]
     cell_size: Option<f64>,
+    /// Also write what a laser on each robot would have measured in every cell that it
+    /// entered, with errors of 1 cm in ranges and of 3 cm and 1° in poses: a log for
+    /// `replay-scans`. Cells are 0.25 m wide if the map does not say it.
+    #[arg(long, value_name = "FILE")]
+    scans: Option<PathBuf>,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -135,6 +142,11 @@ impl Explore {
         folder.write("explored.gif", |file| draw::animation(&trace, file))?;
         folder.write_coverage(&Coverage::from(&trace))?;
         let path = folder.path().to_path_buf();
+        if let Some(scans) = &self.scans {
+            let mut log = Vec::new();
+            Laser::default().log(&trace).write(&mut log)?;
+            files::write(scans, &log).map_err(|error| format!("{}: {error}", scans.display()))?;
+        }
         folder.close()?;
 
         if self.output.json {

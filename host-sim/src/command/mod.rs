@@ -9,6 +9,7 @@ mod folder;
 mod generate;
 mod live;
 mod output;
+mod replay_scans;
 mod report;
 mod survey;
 
@@ -23,6 +24,7 @@ pub(crate) use figures::Figures;
 pub(crate) use firmware::Firmware;
 pub(crate) use generate::Generate;
 pub(crate) use live::{Robot, World};
+pub(crate) use replay_scans::ReplayScans;
 pub(crate) use survey::Survey;
 
 /// Tells the user what there is to say about how a map was read.

@@ -8,8 +8,9 @@ use planner_core::{Cell, Extent};
 
 use super::DrawError;
 use super::paint::{Ground, INK, rgb, robot_color};
-use super::replay::{Replay, cells};
+use super::replay::Replay;
 use crate::record::grid::Trace;
+use crate::world::cells;
 
 /// Frames at most; a longer run is shown in larger strides.
 const MOST_FRAMES: u32 = 200;

@@ -7,11 +7,15 @@ mod animation;
 pub mod chart;
 #[cfg(not(target_arch = "wasm32"))]
 mod coverage;
+#[cfg(not(target_arch = "wasm32"))]
+mod legend;
 mod oblique;
 mod paint;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
 mod replay;
+#[cfg(not(target_arch = "wasm32"))]
+mod scans;
 mod top;
 
 use std::io;
@@ -27,6 +31,8 @@ pub use oblique::{oblique_view, oblique_voxels};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
 pub use replay::Replay;
+#[cfg(not(target_arch = "wasm32"))]
+pub use scans::scans;
 pub use top::top_view;
 
 /// A picture that cannot be made.

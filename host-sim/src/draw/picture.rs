@@ -4,23 +4,19 @@ use std::io;
 
 use image::{Rgb, RgbImage};
 use planner_core::Cell;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::paint::{Ground, INK, ROBOT_COLORS, robot_color, text};
-use super::replay::{Replay, cells};
+use super::legend::{self, Area, LINE, Legend, MARGIN, write_lines};
+use super::paint::{Ground, INK, ROBOT_COLORS, robot_color};
+use super::replay::Replay;
 use super::{DrawError, write_png};
 use crate::record::grid::Trace;
+use crate::world::cells;
 
 /// Sides of the drawn map in pixels, about.
 const SIDE: u32 = 1200;
 /// Least width, so that the caption has room.
 const LEAST_WIDTH: u32 = 720;
-const MARGIN: i32 = 16;
-const LINE: i32 = 22;
-const TEXT: u32 = 15;
-
-type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
 /// Writes the final picture of a trace as PNG.
 ///
@@ -39,10 +35,9 @@ pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
         }
     }
     let frame = Frame::of(trace);
-    let keys = keys(trace, &replay, frame.width);
-    let rows = keys.last().map_or(0, |key| key.row + 1);
+    let legend = legend(trace, &replay, frame.width);
     let lines = caption(trace, &replay, last_news);
-    let footer = MARGIN + LINE * (lines.len() as i32 + rows) + MARGIN / 2;
+    let footer = MARGIN + LINE * (lines.len() as i32 + legend.rows()) + MARGIN / 2;
     let size = (frame.width, frame.bottom() as u32 + footer as u32);
     let mut picture = RgbImage::from_pixel(size.0, size.1, Rgb([255; 3]));
     {
@@ -50,14 +45,8 @@ pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
         frame.draw_ground(&area, &replay)?;
         frame.draw_ways(&area, trace)?;
         frame.draw_robots(&area, trace, &replay)?;
-        let mut y = frame.bottom() + MARGIN;
-        for line in &lines {
-            area.draw(&Text::new(line.as_str(), (MARGIN, y), text(TEXT)))?;
-            y += LINE;
-        }
-        for key in &keys {
-            key.draw(&area, y + key.row * LINE)?;
-        }
+        let y = write_lines(&area, frame.bottom() + MARGIN, &lines)?;
+        legend.draw(&area, y, Sign::draw)?;
         area.present()?;
     }
     write_png(&picture, to)
@@ -245,14 +234,6 @@ fn caption(trace: &Trace, replay: &Replay<'_>, last_news: u32) -> [String; 2] {
     ]
 }
 
-/// One entry of the legend.
-struct Key {
-    x: i32,
-    row: i32,
-    label: String,
-    sign: Sign,
-}
-
 enum Sign {
     Ground(Ground),
     Start,
@@ -260,28 +241,19 @@ enum Sign {
     Robot(usize),
 }
 
-impl Key {
-    fn draw(&self, area: &Area<'_>, y: i32) -> Result<(), DrawError> {
-        let (x, middle) = (self.x, y + TEXT as i32 / 2);
-        match self.sign {
-            Sign::Ground(ground) => {
-                let square = [(x, middle - 6), (x + 14, middle + 7)];
-                area.draw(&Rectangle::new(square, ground.color().filled()))?;
-                area.draw(&Rectangle::new(square, INK.stroke_width(1)))?;
-            }
-            Sign::Start => draw_start(area, (x + 7, middle), 5, INK)?,
-            Sign::End => draw_end(area, (x + 7, middle), 5, INK)?,
-            Sign::Robot(robot) => {
-                let line = [(x, middle), (x + 14, middle)];
-                area.draw(&PathElement::new(line, robot_color(robot).stroke_width(3)))?;
-            }
+impl Sign {
+    /// Draws the sign from `x` on, around the height `middle`.
+    fn draw(&self, area: &Area<'_>, (x, middle): (i32, i32)) -> Result<(), DrawError> {
+        match *self {
+            Self::Ground(ground) => legend::square(area, (x, middle), ground.color()),
+            Self::Start => draw_start(area, (x + 7, middle), 5, INK),
+            Self::End => draw_end(area, (x + 7, middle), 5, INK),
+            Self::Robot(robot) => legend::dash(area, (x, middle), robot_color(robot)),
         }
-        Ok(area.draw(&Text::new(self.label.as_str(), (x + 20, y), text(TEXT)))?)
     }
 }
 
-/// The legend, broken into rows of `width` pixels.
-fn keys(trace: &Trace, replay: &Replay<'_>, width: u32) -> Vec<Key> {
+fn legend(trace: &Trace, replay: &Replay<'_>, width: u32) -> Legend<Sign> {
     let is_there =
         |ground: &Ground| cells(replay.extent()).any(|cell| replay.ground(cell) == *ground);
     let grounds = Ground::ALL.into_iter().filter(is_there);
@@ -307,23 +279,5 @@ fn keys(trace: &Trace, replay: &Replay<'_>, width: u32) -> Vec<Key> {
             Sign::Robot(robot),
         ));
     }
-    let (mut x, mut row) = (MARGIN, 0);
-    entries
-        .into_iter()
-        .map(|(label, sign)| {
-            // The font is fixed-width: 0.6 of its size a character.
-            let wide = 20 + (label.chars().count() as i32 * TEXT as i32 * 62) / 100 + 18;
-            if x > MARGIN && x + wide > width as i32 {
-                (x, row) = (MARGIN, row + 1);
-            }
-            let key = Key {
-                x,
-                row,
-                label,
-                sign,
-            };
-            x += wide;
-            key
-        })
-        .collect()
+    Legend::of(entries, width)
 }

@@ -6,7 +6,7 @@ use super::paint::Ground;
 use crate::record::grid::{Record, Trace};
 use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
-use crate::world::Reachable;
+use crate::world::{Reachable, index};
 
 /// A trace played forward.
 pub struct Replay<'a> {
@@ -143,14 +143,4 @@ impl<'a> Replay<'a> {
             (false, _) => Ground::Unknown,
         }
     }
-}
-
-fn index(extent: Extent, cell: Cell) -> usize {
-    cell.y as usize * usize::from(extent.width) + cell.x as usize
-}
-
-/// Every cell of an extent, row by row.
-pub(super) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
-    let row = move |y| (0..extent.width as i16).map(move |x| Cell::new(x, y));
-    (0..extent.height as i16).flat_map(row)
 }

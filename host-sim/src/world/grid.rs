@@ -107,12 +107,13 @@ impl Grid {
 }
 
 /// Every cell of an extent in reading order.
-pub(super) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
+pub(crate) fn cells(extent: Extent) -> impl Iterator<Item = Cell> {
     (0..extent.height as i16)
         .flat_map(move |y| (0..extent.width as i16).map(move |x| Cell { x, y }))
 }
 
-fn index(extent: Extent, cell: Cell) -> usize {
+/// Where a cell of the extent stands in reading order.
+pub(crate) fn index(extent: Extent, cell: Cell) -> usize {
     cell.y as usize * extent.width as usize + cell.x as usize
 }
 

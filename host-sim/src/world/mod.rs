@@ -25,6 +25,7 @@ use planner_core::{Cell, Extent};
 pub use error::{Problem, WorldError};
 pub use generate::{Family, Recipe, generate, paper};
 pub use grid::LARGEST;
+pub(crate) use grid::{cells, index};
 pub use reach::Reachable;
 pub use read::{ReadOptions, Scale};
 pub use starts::Starts;

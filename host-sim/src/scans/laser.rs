@@ -17,6 +17,9 @@ use crate::world::World;
 pub struct Laser {
     /// Side of a cell in metres, where the map does not say it.
     pub cell_size: f64,
+    /// How far the log's cells lie off the map's, in cells along both axes: what a robot
+    /// maps does not begin at a wall.
+    pub shift: f64,
     /// Beams a look, in equal steps all around.
     pub beams: u16,
     /// Largest range in metres, which is read where nothing is hit.
@@ -33,10 +36,11 @@ pub struct Laser {
 
 impl Default for Laser {
     /// 360 beams of 8 m that err by 1 cm, from poses that err by 3 cm and 1°; cells of
-    /// 0.25 m.
+    /// 0.25 m, those of the log a third of a cell off.
     fn default() -> Self {
         Self {
             cell_size: 0.25,
+            shift: 0.35,
             beams: 360,
             range: 8.0,
             range_error: 0.01,
@@ -49,7 +53,7 @@ impl Default for Laser {
 
 impl Laser {
     /// A look in every cell that a robot entered, one robot after the other. The log's
-    /// origin is the map's lower left corner.
+    /// origin is the map's lower left corner, but for the shift.
     pub fn log(&self, trace: &Trace) -> Log {
         let world = &trace.scenario.world;
         let mut dice = Dice::new(self.seed);
@@ -87,9 +91,10 @@ impl Laser {
             }
         });
         let readings = readings.collect();
+        let height = f64::from(world.extent().height);
         Look {
-            x: from.0 * size + self.place_error * normal(dice),
-            y: (f64::from(world.extent().height) - from.1) * size + self.place_error * normal(dice),
+            x: (from.0 + self.shift) * size + self.place_error * normal(dice),
+            y: (height - from.1 + self.shift) * size + self.place_error * normal(dice),
             heading: heading + self.heading_error * normal(dice),
             readings,
         }
@@ -174,6 +179,7 @@ mod tests {
     fn a_log_without_errors_shows_the_world() {
         let trace = trace();
         let exact = Laser {
+            shift: 0.0,
             range_error: 0.0,
             place_error: 0.0,
             heading_error: 0.0,

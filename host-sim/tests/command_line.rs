@@ -600,7 +600,7 @@ fn logs_of_scans_are_scored_and_drawn() {
     };
     bad(
         &["rooms.txt", "--cell-size=0.1"],
-        &["rooms.txt: ", "line 2"],
+        &["rooms.txt: holds no scan"],
     );
     bad(
         &["none.log", "--cell-size=0.1"],

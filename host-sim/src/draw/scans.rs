@@ -3,6 +3,7 @@
 use std::io;
 
 use image::{Rgb, RgbImage};
+use planner_core::{Cell, Extent};
 use plotters::prelude::*;
 
 use super::legend::{self, Area, LINE, Legend, MARGIN, write_lines};
@@ -104,8 +105,8 @@ impl Sign {
 /// # Errors
 /// Those of `to`.
 pub fn scans(replayed: &Replayed, score: &Score, to: impl io::Write) -> Result<(), DrawError> {
-    let extent = replayed.extent();
-    let (columns, rows) = (u32::from(extent.width), u32::from(extent.height));
+    let part = Part::seen(replayed);
+    let (columns, rows) = (part.columns, part.rows);
     let beside = columns <= 2 * rows;
     let across = columns * if beside { 2 } else { 1 };
     let scale = (SIDE / across).clamp(1, 12);
@@ -128,7 +129,7 @@ pub fn scans(replayed: &Replayed, score: &Score, to: impl io::Write) -> Result<(
         (first, Sign::believed as fn(Belief, Verdict) -> Sign),
         (second, |_, verdict| Sign::voted(verdict)),
     ] {
-        draw_map(&mut picture, corner, scale, replayed, sign);
+        draw_map(&mut picture, corner, scale, replayed, &part, sign);
     }
     {
         let area = BitMapBackend::with_buffer(&mut picture, size).into_drawing_area();
@@ -146,15 +147,53 @@ pub fn scans(replayed: &Replayed, score: &Score, to: impl io::Write) -> Result<(
     write_png(&picture, to)
 }
 
+/// The part of the grid of which anything is known, and a cell around it.
+struct Part {
+    west: i16,
+    north: i16,
+    columns: u32,
+    rows: u32,
+}
+
+impl Part {
+    fn seen(replayed: &Replayed) -> Self {
+        let is_seen = |at: &Cell| {
+            replayed.belief(*at) != Belief::Unknown || replayed.verdict(*at) != Verdict::Unknown
+        };
+        let (mut low, mut high) = ((i16::MAX, i16::MAX), (i16::MIN, i16::MIN));
+        for at in cells(replayed.extent()).filter(is_seen) {
+            low = (low.0.min(at.x), low.1.min(at.y));
+            high = (high.0.max(at.x), high.1.max(at.y));
+        }
+        // The robot's own cell is seen.
+        Self {
+            west: low.0 - 1,
+            north: low.1 - 1,
+            columns: 3 + (high.0 - low.0) as u32,
+            rows: 3 + (high.1 - low.1) as u32,
+        }
+    }
+
+    fn cells(&self) -> impl Iterator<Item = Cell> {
+        let (west, north) = (self.west, self.north);
+        cells(Extent::new(self.columns as u16, self.rows as u16))
+            .map(move |at| Cell::new(at.x + west, at.y + north))
+    }
+}
+
 fn draw_map(
     picture: &mut RgbImage,
     corner: (u32, u32),
     scale: u32,
     replayed: &Replayed,
+    part: &Part,
     sign: fn(Belief, Verdict) -> Sign,
 ) {
-    let corner = (corner.0 as f32, corner.1 as f32);
-    for at in cells(replayed.extent()) {
+    let corner = (
+        corner.0 as f32 - f32::from(part.west) * scale as f32,
+        corner.1 as f32 - f32::from(part.north) * scale as f32,
+    );
+    for at in part.cells().filter(|at| replayed.extent().contains(*at)) {
         let color = rgb(sign(replayed.belief(at), replayed.verdict(at)).color());
         let (x, y) = (
             f32::from(at.x) * scale as f32,

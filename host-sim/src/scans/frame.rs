@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 
 use planner_core::Extent;
-use planner_core::sight::Beam;
 use thiserror::Error;
 
 use super::{Log, Look};
@@ -96,15 +95,17 @@ impl Frame {
         (self.origin.0 + look.x / size, self.origin.1 - look.y / size)
     }
 
-    pub(super) fn beams<'a>(&self, log: &'a Log, look: &'a Look) -> impl Iterator<Item = Beam> {
-        let size = self.options.cell_size as f32;
-        let measured = look.readings.iter().filter(|reading| reading.range >= 0.0);
-        measured.map(move |reading| Beam {
-            bearing: -reading.bearing,
-            range: match reading.range >= log.nothing_from {
-                true => f32::INFINITY,
-                false => reading.range / size,
-            },
+    /// The measurements of a look: bearings, from east to south, and ranges in cells,
+    /// infinite where nothing was hit.
+    pub(super) fn measured(&self, log: &Log, look: &Look) -> impl Iterator<Item = (f64, f64)> {
+        let (size, nothing_from) = (self.options.cell_size, log.nothing_from);
+        let readings = look.readings.iter().filter(|reading| reading.range >= 0.0);
+        readings.map(move |reading| {
+            let range = match reading.range >= nothing_from {
+                true => f64::INFINITY,
+                false => f64::from(reading.range) / size,
+            };
+            (-f64::from(reading.bearing), range)
         })
     }
 }

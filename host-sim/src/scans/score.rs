@@ -73,7 +73,7 @@ impl Score {
             let those = all.iter().filter(|at| that(**at)).count();
             100.0 * those as f64 / all.len().max(1) as f64
         };
-        let measured = |look: &super::Look| frame.beams(log, look).count();
+        let measured = |look: &super::Look| frame.measured(log, look).count();
         Self {
             log: log.name.clone(),
             looks: log.looks.len(),

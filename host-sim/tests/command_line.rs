@@ -563,6 +563,7 @@ fn logs_of_scans_are_scored_and_drawn() {
         "replay-scans",
         "corridor.log",
         "--cell-size=0.1",
+        "--preset=truthful",
         "--out=drawn",
     ];
     let output = host_sim(folder.path(), &[&replay[..], &["--json"]].concat())

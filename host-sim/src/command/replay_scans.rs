@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use host_sim::draw;
 use host_sim::scans::{Log, Options, Score};
+use planner_core::explorer::SensorModel;
 use planner_core::sight::MAX_RADIUS;
 
 use super::Done;
@@ -24,6 +25,9 @@ pub(crate) struct ReplayScans {
     /// How far beams count, in cells, 1 to 15.
     #[arg(long, value_name = "CELLS", default_value_t = MAX_RADIUS, value_parser = clap::value_parser!(u8).range(1..=i64::from(MAX_RADIUS)))]
     range: u8,
+    /// How far the map believes a look.
+    #[arg(long, value_name = "NAME", default_value = "lidar")]
+    preset: Preset,
     /// Folder for the pictures.
     #[arg(long, value_name = "DIR", default_value = "out/scans")]
     out: PathBuf,
@@ -32,11 +36,33 @@ pub(crate) struct ReplayScans {
     json: bool,
 }
 
+/// Models of sensors that planner-core comes with.
+#[derive(Clone, Copy, ValueEnum)]
+enum Preset {
+    /// Always right: the first look decides.
+    Truthful,
+    /// A laser scanner.
+    Lidar,
+    /// A few range sensors, in cells about as large as their errors.
+    Rangers,
+}
+
+impl From<Preset> for SensorModel {
+    fn from(preset: Preset) -> Self {
+        match preset {
+            Preset::Truthful => Self::truthful(),
+            Preset::Lidar => Self::lidar(),
+            Preset::Rangers => Self::rangers(),
+        }
+    }
+}
+
 impl ReplayScans {
     pub(crate) fn run(self) -> Done {
         let options = Options {
             cell_size: self.cell_size,
             range: self.range,
+            sensor: self.preset.into(),
         };
         let mut names = BTreeSet::new();
         let mut scores = Vec::new();

@@ -17,6 +17,7 @@ const SIDE: u32 = 1440;
 /// Least width, so that the caption has room.
 const LEAST_WIDTH: u32 = 900;
 
+const DOUBTFUL: RGBColor = RGBColor(204, 121, 167);
 const WAY: RGBColor = RGBColor(0, 158, 115);
 /// Open floor that the map calls a wall.
 const CLOSED: RGBColor = RGBColor(213, 94, 0);
@@ -30,6 +31,7 @@ const UNCLEAR: RGBColor = RGBColor(150, 154, 162);
 enum Sign {
     Free,
     Wall,
+    Doubtful,
     Unknown,
     Closed,
     Opened,
@@ -38,9 +40,10 @@ enum Sign {
 }
 
 impl Sign {
-    const ALL: [Self; 7] = [
+    const ALL: [Self; 8] = [
         Self::Free,
         Self::Wall,
+        Self::Doubtful,
         Self::Unknown,
         Self::Closed,
         Self::Opened,
@@ -52,6 +55,7 @@ impl Sign {
         match self {
             Self::Free => Ground::Free.color(),
             Self::Wall => Ground::Obstacle.color(),
+            Self::Doubtful => DOUBTFUL,
             Self::Unknown => Ground::Unknown.color(),
             Self::Closed => CLOSED,
             Self::Opened => OPENED,
@@ -64,6 +68,7 @@ impl Sign {
         match self {
             Self::Free => "free",
             Self::Wall => "wall",
+            Self::Doubtful => "doubtful",
             Self::Unknown => "not known",
             Self::Closed => "open floor taken for wall",
             Self::Opened => "wall taken for free",
@@ -77,6 +82,7 @@ impl Sign {
             (Belief::Unknown, _) => Self::Unknown,
             (Belief::Wall, Verdict::Open) => Self::Closed,
             (Belief::Free, Verdict::Wall) => Self::Opened,
+            (Belief::Doubtful, _) => Self::Doubtful,
             (Belief::Wall, _) => Self::Wall,
             (Belief::Free, _) => Self::Free,
         }

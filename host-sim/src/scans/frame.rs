@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use planner_core::Extent;
+use planner_core::explorer::SensorModel;
 use thiserror::Error;
 
 use super::{Log, Look};
@@ -18,6 +19,8 @@ pub struct Options {
     pub cell_size: f64,
     /// How far beams count, in cells, 1 to [`MAX_RADIUS`](planner_core::sight::MAX_RADIUS).
     pub range: u8,
+    /// How far the map believes a look.
+    pub sensor: SensorModel,
 }
 
 /// Cells of a size that does not fit the log.

@@ -68,7 +68,11 @@ impl Replayed {
             .first()
             .map_or((0.0, 0.0), |look| frame.place(look));
         let mut robot = Box::new(Robot::vacant());
-        let fits = robot.reset(Config::new(), RobotId(0), extent, cell(start));
+        let config = Config {
+            sensor: frame.options.sensor,
+            ..Config::new()
+        };
+        let fits = robot.reset(config, RobotId(0), extent, cell(start));
         fits.unwrap_or_else(|error| unreachable!("the grid was made to fit: {error}"));
         Self {
             extent,
@@ -135,10 +139,11 @@ impl Replayed {
     /// What the map says of a cell of the grid.
     pub fn belief(&self, at: Cell) -> Belief {
         let map = self.robot.map();
-        match (map.is_free(at), map.is_obstacle(at)) {
-            (true, _) => Belief::Free,
-            (_, true) => Belief::Wall,
-            _ => Belief::Unknown,
+        match () {
+            () if map.is_free(at) => Belief::Free,
+            () if map.is_doubtful(at) => Belief::Doubtful,
+            () if map.is_obstacle(at) => Belief::Wall,
+            () => Belief::Unknown,
         }
     }
 
@@ -161,6 +166,8 @@ impl Replayed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use planner_core::explorer::SensorModel;
+
     use crate::scans::Reading;
 
     /// A room of 5×5 m with a pillar, in metres from its lower left corner: what a beam hits.
@@ -205,6 +212,7 @@ mod tests {
     const OPTIONS: Options = Options {
         cell_size: 0.25,
         range: 15,
+        sensor: SensorModel::truthful(),
     };
 
     #[test]
@@ -240,6 +248,13 @@ mod tests {
         assert!(score.closed_percent > 0.0);
         // What the robot drives through afterwards is no wall.
         assert_eq!(score.driven_closed, 0);
+        // A map that weighs its looks is not misled by one.
+        let weighed = Options {
+            sensor: SensorModel::lidar(),
+            ..OPTIONS
+        };
+        let (_, weighed) = log.replay(weighed).unwrap();
+        assert!(weighed.closed_percent < 0.2 * score.closed_percent);
     }
 
     #[test]

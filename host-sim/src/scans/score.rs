@@ -17,8 +17,17 @@ pub enum Belief {
     Unknown,
     /// It can be passed.
     Free,
-    /// It cannot.
+    /// It was seen blocked, too seldom to be decided: an obstacle for now.
+    Doubtful,
+    /// It cannot be passed.
     Wall,
+}
+
+impl Belief {
+    /// Whether no way leads over it.
+    pub fn is_obstacle(self) -> bool {
+        matches!(self, Self::Doubtful | Self::Wall)
+    }
 }
 
 /// How far belief and vote agree.
@@ -44,6 +53,8 @@ pub struct Score {
     pub open_floor: usize,
     /// Share of the open floor that is an obstacle on the map, in per cent.
     pub closed_percent: f64,
+    /// Share of the open floor that is a doubtful obstacle there, in per cent.
+    pub doubtful_percent: f64,
     /// Share of the open floor that cannot be reached over free cells from the first
     /// place, in per cent.
     pub cut_off_percent: f64,
@@ -84,12 +95,16 @@ impl Score {
             width: frame.extent.width,
             height: frame.extent.height,
             open_floor: open.len(),
-            closed_percent: percent(&open, &|at| is(at, Belief::Wall)),
+            closed_percent: percent(&open, &|at| replayed.belief(at).is_obstacle()),
+            doubtful_percent: percent(&open, &|at| is(at, Belief::Doubtful)),
             cut_off_percent: percent(&open, &|at| !reached[index(frame.extent, at)]),
             walls: walls.len(),
             opened_percent: percent(&walls, &|at| is(at, Belief::Free)),
             driven: driven.len(),
-            driven_closed: driven.iter().filter(|at| is(**at, Belief::Wall)).count(),
+            driven_closed: driven
+                .iter()
+                .filter(|at| replayed.belief(**at).is_obstacle())
+                .count(),
         }
     }
 }

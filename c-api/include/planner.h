@@ -35,9 +35,9 @@
 // Places that `planner_shut` names at most.
 #define PLANNER_MAX_SHUT 8
 
-// Size of a planner in words of 8 bytes: the 28.5 KiB that an explorer may take by
+// Size of a planner in words of 8 bytes: the 29,032 bytes that an explorer may take by
 // `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
-#define PLANNER_WORDS 3649
+#define PLANNER_WORDS 3630
 
 // What came of a call.
 typedef enum {
@@ -158,6 +158,16 @@ typedef enum {
   // it looks again, a few times, before it says so.
   PLANNER_WAIT_DOUBT = 8,
 } PlannerWait;
+
+// How far the looks of a sensor can be believed.
+typedef enum {
+  // A few range sensors, one look a step: three votes, each from another cell.
+  PLANNER_SENSOR_RANGERS = 0,
+  // A laser scanner, three looks or more a step: three votes.
+  PLANNER_SENSOR_LIDAR = 1,
+  // Never wrong: the first look decides. For simulations.
+  PLANNER_SENSOR_TRUTHFUL = 2,
+} PlannerSensor;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.
 typedef struct {

@@ -611,7 +611,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         if !self.has_plan() {
             self.lose_plan();
         }
-        if self.around.is_goal(self.around.position) {
+        // Where one vote decides, nothing hangs on it.
+        let may_fall = self.config.sensor.barren_looks() > 0;
+        if may_fall && self.around.is_goal(self.around.position) {
             self.evidence.rest();
         }
         if let Some(direction) = self.look() {

@@ -42,11 +42,18 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
 
     /// The frontier cells of a tile, and those that are due a visit. Work: five tiles, and
     /// 32 cells where there are visits.
+    #[inline] // mostly there are no visits
     pub(crate) fn frontier(&self, at: TileIndex) -> u64 {
         let frontier = self.map.frontier(at);
         if self.visits.is_empty() {
             return frontier;
         }
+        frontier | self.due(at)
+    }
+
+    /// The free cells of a tile beside a wall that is due a visit.
+    #[inline(never)]
+    fn due(&self, at: TileIndex) -> u64 {
         let sides = self
             .visits
             .iter()
@@ -55,7 +62,7 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
             .filter_map(TileIndex::of)
             .filter(|(tile, _)| *tile == at)
             .fold(0, |cells, (_, bit)| cells | bit);
-        frontier | due & self.map.free(at)
+        due & self.map.free(at)
     }
 
     /// The frontier cells of a tile that are worth a look of this robot.

@@ -84,7 +84,10 @@ fn errors() -> impl Strategy<Value = Errors> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig {
+        cases: 4 * ProptestConfig::default().cases,
+        ..ProptestConfig::default()
+    })]
 
     /// With ranges in whole millimetres and every error within the tolerance no scan
     /// tells a lie, and walls in front of a beam are seen, their corners aside.

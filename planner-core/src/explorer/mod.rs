@@ -216,6 +216,9 @@ impl Config {
     }
 }
 
+/// So many cells that are told to be walls at once and were free are no error of a look.
+const MANY_SHUT: u32 = 4;
+
 /// Ticks that a step waits where the last look saw something in its way: enough for looks
 /// that agree to turn a cell that was surely free into a wall.
 const MOST_VETOES: u8 = 8;
@@ -399,7 +402,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.learn(learnt);
         if learnt.closed > 0 {
             self.evidence.dispute();
-            self.was_told_shut = true;
+            self.was_told_shut |= learnt.closed >= MANY_SHUT;
         }
         learnt
     }
@@ -507,6 +510,18 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         Action::Wait
     }
 
+    /// Not stopped any more; everything is tried anew.
+    fn go_on(&mut self) {
+        self.role.stopped = Maybe::Nothing;
+        self.role.plan = None;
+        self.role.changes = 0;
+        self.role.lost = 0;
+        self.around.aside.reset();
+        self.looks = 0;
+        self.holds = 0;
+        self.far.cancel();
+    }
+
     /// Nothing is left: the robot stops, or on patrol looks at shut places again.
     fn finish(&mut self, stop: Stop) -> Action {
         if stop.is_complete() && self.evidence.is_disputed() && self.doubts < MOST_VETOES {
@@ -568,7 +583,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         let learnt = self.look_around(sighting);
         if is_carried && learnt.anything() {
             // What it stopped for was true of another place.
-            self.resume();
+            self.go_on();
         }
         self.others.purse.saw(learnt.cells);
         self.link.look(sighting);
@@ -667,15 +682,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn resume(&mut self) {
-        self.role.stopped = Maybe::Nothing;
-        self.role.plan = None;
-        self.role.changes = 0;
-        self.role.lost = 0;
-        self.around.aside.reset();
+        self.go_on();
         self.around.visit_shut_places();
-        self.looks = 0;
-        self.holds = 0;
-        self.far.cancel();
     }
 
     fn report(&mut self, motion: Motion) {

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use host_sim::draw::Coverage;
 use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
-use host_sim::run::{self, Options, Outcome};
+use host_sim::run::{self, Options, Outcome, RobotOutcome};
 use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{ErrorKind, MediumKind, Preset, Trouble};
 use host_sim::world::{Family, Starts, World, generate};
@@ -45,8 +45,8 @@ fn what_robots_get_wrong_is_counted() {
     trusting.planner = PlannerKind::MinPos;
     let (walled, _) = run(&trusting);
     assert!(walled.violations.is_empty(), "{:?}", walled.violations);
-    assert!(walled.false_claims() > 0, "{:?}", walled.robots);
-    assert!(walled.robots.iter().all(|robot| robot.cells_closed > 0));
+    let is_wrong = |robot: &RobotOutcome| robot.cells_missed > 0 && robot.cells_closed > 0;
+    assert!(walled.robots.iter().all(is_wrong), "{:?}", walled.robots);
     assert_eq!(walled.bumps, 0, "no wall was hidden");
     let (opened, _) = run(&scenario(Trouble {
         false_frees: 0.9,
@@ -166,6 +166,7 @@ fn a_world_misleads_in_the_same_way_again_and_in_its_trace() {
 }
 
 /// Up to 40 % of all that is seen is wrong; people, doors and other robots are in the way.
+/// Poses are right: what the proof asks for.
 fn trouble() -> impl Strategy<Value = Trouble> {
     let share = || prop_oneof![Just(0.0), 0.0..0.4f64];
     (
@@ -174,24 +175,20 @@ fn trouble() -> impl Strategy<Value = Trouble> {
             share(),
             prop::sample::select(ErrorKind::value_variants()),
         ),
-        (share(), prop_oneof![Just(0u32), 20u32..300]),
         (0u16..4, 0u16..4, any::<bool>(), 1u8..4),
     )
         .prop_map(
-            |(
-                (false_walls, false_frees, error_kind),
-                (misplaced, drift),
-                (people, doors, see_robots, looks),
-            )| Trouble {
-                false_walls,
-                false_frees,
-                error_kind,
-                misplaced,
-                drift,
-                people,
-                doors,
-                see_robots,
-                looks,
+            |((false_walls, false_frees, error_kind), (people, doors, see_robots, looks))| {
+                Trouble {
+                    false_walls,
+                    false_frees,
+                    error_kind,
+                    people,
+                    doors,
+                    see_robots,
+                    looks,
+                    ..Trouble::default()
+                }
             },
         )
 }
@@ -222,7 +219,7 @@ fn misled() -> impl Strategy<Value = Scenario> {
                 conditions.loss = loss;
                 conditions.trouble = trouble;
                 conditions.preset = preset;
-                conditions.max_ticks *= 10;
+                conditions.max_ticks *= 50;
                 if radio {
                     conditions.medium = MediumKind::Radio;
                 }
@@ -238,7 +235,7 @@ fn soak() -> ProptestConfig {
         cases: asked
             .ok()
             .and_then(|cases| cases.parse().ok())
-            .unwrap_or(200),
+            .unwrap_or(40),
         ..ProptestConfig::default()
     }
 }

@@ -289,7 +289,7 @@ pub enum PlannerWait {
     /// A robot that sees all around need not turn.
     Look = 5,
     /// The last look saw the next cell of its way blocked, which its map calls free: it
-    /// looks again, a few times, and then tries all the same.
+    /// looks again, a few times, and takes what stays for a refusal.
     Obstructed = 6,
     /// Nothing is left. It will look again at places that were free and are walls now.
     Patrol = 7,

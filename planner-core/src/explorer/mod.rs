@@ -64,7 +64,7 @@
 //!     it began, it begins again. Otherwise the robot stops, waits for the end of the
 //!     round, or begins the next one.
 //! - *A step is vetoed* (`vetoes`): the last look saw something there. It waits 8 ticks at
-//!   most, and then tries.
+//!   most; what then is still seen counts as a refusal, which lowers 2.
 //! - *A step* lowers 4 ([`Motion::Moved`]) or 2 ([`Motion::Blocked`]); if it was held
 //!   ([`Motion::Held`]), the robot counts up to [`Config::holds`] until it made a step, and
 //!   takes the last one for a refusal.
@@ -497,12 +497,19 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             .observe(map, sighting, &self.config.sensor, idles, hidden)
     }
 
-    /// Whether the step leads to where the last look saw something: the robot looks again
-    /// before it tries.
+    /// Whether the step leads to where the last look saw something: the robot looks again,
+    /// and takes what stays for a refusal. It never steps on what it sees.
     fn vetoes(&mut self, step: Direction) -> bool {
-        let vetoes = self.obstructed >> step as u8 & 1 == 1 && self.vetoes < MOST_VETOES;
-        self.vetoes = if vetoes { self.vetoes + 1 } else { 0 };
-        vetoes
+        let is_obstructed = self.obstructed >> step as u8 & 1 == 1;
+        if !is_obstructed {
+            self.vetoes = 0;
+        } else if self.vetoes < MOST_VETOES {
+            self.vetoes += 1;
+        } else {
+            self.vetoes = 0;
+            self.refuse(self.around.position.step(step), false);
+        }
+        is_obstructed
     }
 
     fn wait(&mut self, reason: Wait) -> Action {

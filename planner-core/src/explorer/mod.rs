@@ -462,7 +462,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.around.sides_to_look(here),
             self.around.sides_to_look(here),
         );
-        sides.any(is_doubtful) && self.evidence.barren() <= self.config.sensor.barren_looks() + 1
+        sides.any(is_doubtful) && self.evidence.barren() < self.config.sensor.barren_looks()
             || others.any(is_visit) && self.looks < MOST_VETOES
     }
 

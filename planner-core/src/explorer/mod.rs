@@ -458,12 +458,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     fn may_decide(&self, here: Cell) -> bool {
         let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
         let is_visit = |side: Direction| self.around.map.is_known(here.step(side));
-        let (mut sides, mut others) = (
-            self.around.sides_to_look(here),
-            self.around.sides_to_look(here),
-        );
-        sides.any(is_doubtful) && self.evidence.barren() < self.config.sensor.barren_looks()
-            || others.any(is_visit) && self.looks < MOST_VETOES
+        let mut sides = self.around.sides_to_look(here);
+        let barren = self.config.sensor.barren_looks();
+        let may_fall = barren > 0 && self.evidence.barren() <= barren + 1;
+        may_fall && self.around.sides_to_look(here).any(is_doubtful)
+            || self.looks < MOST_VETOES && sides.any(is_visit)
     }
 
     /// A step was refused: the plan leads nowhere, and others may be as good now.

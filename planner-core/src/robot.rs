@@ -266,7 +266,8 @@ pub enum Wait {
     /// What is left lies behind cells that refused a step. They are tried again later.
     Closed,
     /// The last look saw the next cell of its way blocked, which the map calls free: it
-    /// looks again, a few times, and takes what stays for a refusal.
+    /// looks again, a few times, and takes what stays for a refusal. (Where its sensor errs
+    /// by places and the place before showed the cell free, it tries the step.)
     Obstructed,
     /// Nothing seems to be left, but its last look showed a wall of its map free, near by:
     /// it looks again, a few times, before it says so.

@@ -7,7 +7,7 @@
 //! makes a cell free at once, or doubtful, and a doubtful cell is as good as unknown: the
 //! robot goes there and looks again.
 
-use crate::cell::Cell;
+use crate::cell::{Cell, Direction};
 use crate::map::{Learnt, Level, Map};
 use crate::sight::{MAX_RADIUS, Sighting};
 use crate::tile::TileIndex;
@@ -41,8 +41,8 @@ pub struct SensorModel {
     /// How far from the robot, in cells each way, a cell may be so that looks at it can
     /// make it a wall. What is blocked farther away is doubtful until seen from near.
     pub sure_range: u8,
-    /// How far, in cells each way, a cell may be so that looks can change it once it is
-    /// known.
+    /// How far, in cells each way, a cell may be so that looks speak against it once it is
+    /// known. What agrees counts from as far as `sure_range`.
     pub flip_range: u8,
     /// The same for cells on which somebody has stood.
     pub visited_range: u8,
@@ -59,9 +59,9 @@ pub enum Votes {
     /// Every look votes on doubtful cells, one a tick on known ones: for a sensor whose
     /// errors come and go.
     PerLook,
-    /// A look from another cell than the last one that voted; where the robot stands idle
-    /// before something unknown, one look a tick: for errors that a place has (angles,
-    /// gaps between beams, a pose that is off).
+    /// A look from another cell than the last one that voted; where the robot stands still
+    /// before something doubtful, one look a tick on the cells beside it: for errors that a
+    /// place has (angles, gaps between beams, a pose that is off).
     PerPlace,
 }
 
@@ -205,8 +205,8 @@ impl Evidence {
         self.barren
     }
 
-    /// Takes in what was seen from a cell of the extent; `idles` says whether the robot
-    /// stands there for the sake of looking, `hidden` which cells of a tile are left out
+    /// Takes in what was seen from a cell of the extent; `purpose` says what the robot
+    /// stands there for, `hidden` which cells of a tile are left out
     /// where they were seen blocked. Work: at most 25 tiles, each with its four
     /// neighbours.
     pub(super) fn observe<const TW: usize, const TH: usize>(
@@ -214,16 +214,15 @@ impl Evidence {
         map: &mut Map<TW, TH>,
         sighting: &Sighting,
         model: &SensorModel,
-        idles: bool,
+        purpose: Purpose,
         hidden: impl Fn(TileIndex) -> u64,
     ) -> Learnt {
         let centre = sighting.centre();
         self.follow(centre);
         let is_first = !self.has_voted;
-        let votes = match model.votes {
-            Votes::PerLook => true,
-            Votes::PerPlace => idles && is_first || self.voted_from.get() != Some(centre),
-        };
+        // Otherwise a look votes on what it is made for alone.
+        let votes_on_all = model.votes == Votes::PerLook || self.voted_from.get() != Some(centre);
+        let votes = votes_on_all || purpose != Purpose::None && is_first;
         let flips = votes && is_first;
         if votes {
             self.voted_from = Maybe::Just(centre);
@@ -258,13 +257,22 @@ impl Evidence {
             if votes {
                 may_vote |= doubtful;
             }
+            let within = near(at, centre, model.sure_range);
             if flips {
+                may_vote |= (before.free() & free | before.obstacle() & blocked) & within;
                 let visited = before.visited();
                 may_vote |= known & !visited & near(at, centre, model.flip_range);
                 may_vote |= visited & near(at, centre, model.visited_range);
             }
+            if !votes_on_all {
+                may_vote &= match purpose {
+                    Purpose::None => unknown,
+                    Purpose::Sides(sides) => unknown | beside(at, centre, sides),
+                    Purpose::Walls => unknown | before.obstacle() & free,
+                };
+            }
             let against = free & may_vote;
-            let sure = known | near(at, centre, model.sure_range);
+            let sure = known | within;
             let towards = blocked & may_vote & sure;
             let mut none = Counts::NONE;
             // Beyond the window a look stands alone.
@@ -313,6 +321,26 @@ impl Evidence {
         }
         self.counts.get_mut(Window::slot((x, y)))
     }
+}
+
+/// What a robot that stands still looks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    None,
+    /// The cells beside it on these sides, a bit each.
+    Sides(u8),
+    /// Walls of the map that it sees free.
+    Walls,
+}
+
+/// The cells of a tile beside `centre` on these sides.
+fn beside(at: TileIndex, centre: Cell, sides: u8) -> u64 {
+    Direction::ALL
+        .into_iter()
+        .filter(|side| sides >> *side as u8 & 1 == 1)
+        .filter_map(|side| TileIndex::of(centre.step(side)))
+        .filter(|(tile, _)| *tile == at)
+        .fold(0, |cells, (_, bit)| cells | bit)
 }
 
 /// How far walls are compared with looks, in cells each way.

@@ -35,7 +35,8 @@
 //! Every tick lowers this, or a search or a wait goes on that ends by itself:
 //! - *Stopped, off the grid, or nothing seen yet*: nothing is decided.
 //! - *No frontier on the map*: it stops, or waits 8 ticks at most since it last learnt
-//!   something, where a look contradicts a wall; or it visits what was told to be shut.
+//!   something, where a look contradicts a wall; or it goes and looks at what it was told
+//!   to be shut (`stopping`), once after it was told so, which lowered Φ.
 //! - *Hints do not count any more* (`purse`): the far search begins again, once until new
 //!   cells fill the purse.
 //! - *The plan is dropped*: its goal was reached; or its goal or its next cell was set
@@ -63,8 +64,8 @@
 //!   - *Nothing is left* (`conclude`): if the map or what is set aside has changed since
 //!     it began, it begins again. Otherwise the robot stops, waits for the end of the
 //!     round, or begins the next one.
-//! - *A step is vetoed* (`vetoes`): the last look saw something there. It waits 8 ticks at
-//!   most; what then is still seen counts as a refusal, which lowers 2.
+//! - *A step is vetoed* (`ahead`): the last look saw something there. It waits 8 ticks at
+//!   most; what then is still seen counts as a refusal, which lowers 2, or the step is tried.
 //! - *A step* lowers 4 ([`Motion::Moved`]) or 2 ([`Motion::Blocked`]); if it was held
 //!   ([`Motion::Held`]), the robot counts up to [`Config::holds`] until it made a step, and
 //!   takes the last one for a refusal.
@@ -102,14 +103,17 @@
 //! plans lost so, bodies are obstacles to it until a round ends or it learns something,
 //! and each robot stops as shown above, with a reason that names the one in its way.
 
+mod ahead;
 mod aside;
 mod decide;
 mod evidence;
 mod far;
 mod lean;
+mod looking;
 mod others;
 mod patch;
 mod purse;
+mod stopping;
 mod surroundings;
 mod wave;
 mod window;
@@ -117,6 +121,7 @@ mod window;
 pub use evidence::{SensorModel, Votes};
 pub use others::MAX_OTHERS;
 
+use ahead::Ahead;
 use aside::Aside;
 use decide::Near;
 use evidence::Evidence;
@@ -219,13 +224,6 @@ impl Config {
 /// So many cells that are told to be walls at once and were free are no error of a look.
 const MANY_SHUT: u32 = 4;
 
-/// Ticks that a step waits where the last look saw something in its way: enough for looks
-/// that agree to turn a cell that was surely free into a wall.
-const MOST_VETOES: u8 = 8;
-
-/// The most looks in each of four directions that a byte counts.
-const MOST_LOOKS: u8 = 50;
-
 impl Default for Config {
     fn default() -> Self {
         Self::new()
@@ -259,13 +257,11 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     looks: u8,
     /// Steps that were held since the last one that was made.
     holds: u8,
-    /// Sides on which the last look saw the next cell blocked, a bit each.
-    obstructed: u8,
-    /// Ticks waited before such a step.
-    vetoes: u8,
+    ahead: Ahead,
     /// Ticks waited before a stop since something was learnt.
     doubts: u8,
-    /// Whether others have told of a cell as a wall that was free, since it looked itself.
+    /// Whether others have told of many cells as walls that were free, since it went and
+    /// looked itself.
     was_told_shut: bool,
     waiting: Maybe<Wait>,
     work: u32,
@@ -313,8 +309,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             is_astray: false,
             looks: 0,
             holds: 0,
-            obstructed: 0,
-            vetoes: 0,
+            ahead: Ahead::new(),
             doubts: 0,
             was_told_shut: false,
             waiting: Maybe::Nothing,
@@ -368,8 +363,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.is_astray = false;
         self.looks = 0;
         self.holds = 0;
-        self.obstructed = 0;
-        self.vetoes = 0;
+        self.ahead = Ahead::new();
         self.doubts = 0;
         self.was_told_shut = false;
         self.waiting = Maybe::Nothing;
@@ -430,41 +424,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.role.plan = None;
     }
 
-    /// A robot on a frontier cell without a plan looks in every direction that shows
-    /// nothing, in turn, and then sets the cell aside. The direction to look in, if any.
-    fn look(&mut self) -> Option<Direction> {
-        let here = self.around.position;
-        if self.role.plan.is_some() || !self.around.is_goal(here) {
-            return None;
-        }
-        let sides = self.around.sides_to_look(here).count().max(1);
-        let made = usize::from(self.looks);
-        let least = sides * usize::from(self.config.looks.clamp(1, MOST_LOOKS));
-        if made < least || self.may_decide(here) {
-            self.looks = self.looks.saturating_add(1);
-            return self.around.sides_to_look(here).nth(made % sides);
-        }
-        self.looks = 0;
-        self.around.end_visits(here);
-        let unseen = self.around.unknown_sides(here).next();
-        if let Some(side) = unseen {
-            self.around.aside.show_nothing(here, here.step(side));
-        }
-        self.far_is_doubtful = true;
-        None
-    }
-
-    /// Whether more looks may decide of what is beside the cell that the robot stands on.
-    fn may_decide(&self, here: Cell) -> bool {
-        let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
-        let is_visit = |side: Direction| self.around.map.is_known(here.step(side));
-        let mut sides = self.around.sides_to_look(here);
-        let barren = self.config.sensor.barren_looks();
-        let may_fall = barren > 0 && self.evidence.barren() <= barren + 1;
-        may_fall && self.around.sides_to_look(here).any(is_doubtful)
-            || self.looks < MOST_VETOES && sides.any(is_visit)
-    }
-
     /// A step was refused: the plan leads nowhere, and others may be as good now.
     fn refuse(&mut self, cell: Cell, by_robot: bool) {
         self.around.aside.refuse(cell, by_robot, self.around.now);
@@ -475,93 +434,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.far.cancel();
     }
 
-    /// Takes in a look from a cell of the grid.
-    fn look_around(&mut self, sighting: &Sighting) -> Learnt {
-        let centre = sighting.centre();
-        self.obstructed = Direction::ALL
-            .into_iter()
-            .filter(|side| sighting.is_blocked(centre.step(*side)))
-            .fold(0, |sides, side| sides | 1 << side as u8);
-        let idles = matches!(
-            self.waiting.get(),
-            Some(Wait::Look(_) | Wait::Obstructed | Wait::Doubt)
-        );
-        // A look for its own sake is taken as it is: a robot that is only pretended hides
-        // nothing for long.
-        let (now, others) = (self.around.now, &self.others);
-        let hides = self.config.sensor.sees_robots && !idles;
-        let hidden = |at: TileIndex| if hides { others.bodies(at, now) } else { 0 };
-        let map = &mut self.around.map;
-        self.evidence
-            .observe(map, sighting, &self.config.sensor, idles, hidden)
-    }
-
-    /// Whether the step leads to where the last look saw something: the robot looks again,
-    /// and takes what stays for a refusal. It never steps on what it sees.
-    fn vetoes(&mut self, step: Direction) -> bool {
-        let is_obstructed = self.obstructed >> step as u8 & 1 == 1;
-        if !is_obstructed {
-            self.vetoes = 0;
-        } else if self.vetoes < MOST_VETOES {
-            self.vetoes += 1;
-        } else {
-            self.vetoes = 0;
-            self.refuse(self.around.position.step(step), false);
-        }
-        is_obstructed
-    }
-
     fn wait(&mut self, reason: Wait) -> Action {
         self.waiting = Maybe::Just(reason);
         Action::Wait
-    }
-
-    /// Not stopped any more; everything is tried anew.
-    fn go_on(&mut self) {
-        self.role.stopped = Maybe::Nothing;
-        self.role.plan = None;
-        self.role.changes = 0;
-        self.role.lost = 0;
-        self.around.aside.reset();
-        self.looks = 0;
-        self.holds = 0;
-        self.far.cancel();
-    }
-
-    /// Nothing is left: the robot stops, or on patrol looks at shut places again.
-    fn finish(&mut self, stop: Stop) -> Action {
-        if stop.is_complete() && self.evidence.is_disputed() && self.doubts < MOST_VETOES {
-            self.doubts += 1;
-            return self.wait(Wait::Doubt);
-        }
-        if stop.is_complete() && core::mem::take(&mut self.was_told_shut) {
-            // What others call shut it has seen free: it goes and looks itself.
-            self.far.cancel();
-            if self.around.visit_shut_places() {
-                return self.wait(Wait::Search);
-            }
-        }
-        let now = self.around.now;
-        if self.config.patrol == 0
-            || !stop.is_complete()
-            || self.around.map.shut().places().is_empty()
-        {
-            return self.stop(stop);
-        }
-        self.role.plan = None;
-        self.far.cancel();
-        if now >= self.patrol_again {
-            self.patrol_again = now.saturating_add(u32::from(self.config.patrol));
-            self.around.visit_shut_places();
-        }
-        self.wait(Wait::Patrol)
-    }
-
-    fn stop(&mut self, stop: Stop) -> Action {
-        self.role.plan = None;
-        self.role.stopped = Maybe::Just(stop);
-        self.far.cancel();
-        Action::Stop(stop)
     }
 
     /// The next step of the plan, if it can be made.

@@ -111,6 +111,17 @@ impl Sighting {
             .is_some_and(|(row, bit)| rows.get(row).is_some_and(|row| row & bit != 0))
     }
 
+    /// The cells seen free at most two columns and two rows away: bit `x - centre.x + 2` of
+    /// row `y - centre.y + 2`.
+    pub(crate) fn free_near(&self) -> [u8; 5] {
+        const CORNER: usize = MAX_RADIUS as usize - 2;
+        let mut near = [0; 5];
+        for (near, row) in near.iter_mut().zip(self.free.iter().skip(CORNER)) {
+            *near = (row >> CORNER) as u8 & 0x1f;
+        }
+        near
+    }
+
     /// The cells seen free, row by row. At most 961.
     pub fn free_cells(&self) -> impl Iterator<Item = Cell> + '_ {
         self.cells(&self.free)

@@ -35,17 +35,15 @@ impl Naive {
             .unwrap_or_default()
     }
 
-    fn observe(&mut self, sighting: &Sighting, model: &SensorModel, idles: bool, barren: u8) {
+    fn observe(&mut self, sighting: &Sighting, model: &SensorModel, purpose: Purpose, barren: u8) {
         let centre = sighting.centre();
         let corner = |at: i16| ((at + 4) >> 3) * 8 - 16;
         let (west, north) = (corner(centre.x), corner(centre.y));
         let holds =
             |(x, y): (i16, i16)| (west..west + 32).contains(&x) && (north..north + 32).contains(&y);
         self.counts.retain(|&at, _| holds(at));
-        let votes = match model.votes {
-            Votes::PerLook => true,
-            Votes::PerPlace => idles && !self.has_voted || self.voted_from != Some(centre),
-        };
+        let votes_on_all = model.votes == Votes::PerLook || self.voted_from != Some(centre);
+        let votes = votes_on_all || purpose != Purpose::None && !self.has_voted;
         let flips = votes && !self.has_voted;
         if votes {
             self.voted_from = Some(centre);
@@ -70,15 +68,22 @@ impl Naive {
             let level = self.level(cell);
             let is_near = |range: u8| cell.chebyshev(centre) <= u16::from(range);
             let is_known = level >= Level::Free;
+            let is_wall = matches!(level, Level::Wall | Level::WallAgain);
+            let flip_range = match level {
+                _ if is_wall == is_blocked && is_near(model.sure_range) => u8::MAX,
+                level if VISITED.contains(&level) => model.visited_range,
+                _ => model.flip_range,
+            };
+            let is_asked = match purpose {
+                Purpose::None => false,
+                Purpose::Sides(sides) => Direction::ALL
+                    .iter()
+                    .any(|side| sides >> *side as u8 & 1 == 1 && centre.step(*side) == cell),
+                Purpose::Walls => is_wall && !is_blocked,
+            };
             let may_vote = level == Level::Unknown
-                || level == Level::Doubtful && votes
-                || is_known
-                    && flips
-                    && is_near(if VISITED.contains(&level) {
-                        model.visited_range
-                    } else {
-                        model.flip_range
-                    });
+                || (level == Level::Doubtful && votes || is_known && flips && is_near(flip_range))
+                    && (votes_on_all || is_asked);
             let mut count = self.counts.get(&at).copied().unwrap_or(0);
             let counts = may_vote && (!is_blocked || is_known || is_near(model.sure_range));
             if counts {
@@ -132,14 +137,19 @@ proptest! {
     fn evidence_is_that_of_a_number_a_cell(
         model in model(),
         from in (0i16..90, 0i16..90),
-        steps in proptest::collection::vec((-2i16..=2, -2i16..=2, 0u8..20, any::<(bool, bool)>()), 1..40),
+        steps in proptest::collection::vec((-2i16..=2, -2i16..=2, 0u8..20, (any::<bool>(), 0u8..40)), 1..40),
         radius in 1u8..=15,
         seed in any::<u64>(),
     ) {
         let mut dice = Rng::new(seed, 0);
         let (mut map, mut evidence, mut naive) = (map(), Evidence::new(), Naive::default());
         let (mut x, mut y) = from;
-        for (dx, dy, jump, (ticks, idles)) in steps {
+        for (dx, dy, jump, (ticks, purpose)) in steps {
+            let purpose = match purpose {
+                0..16 => Purpose::Sides(purpose),
+                16..20 => Purpose::Walls,
+                _ => Purpose::None,
+            };
             let by = if jump == 0 { 13 } else { 1 };
             (x, y) = ((x + by * dx).clamp(0, 89), (y + by * dy).clamp(0, 89));
             if ticks {
@@ -154,8 +164,8 @@ proptest! {
                 !EXTENT.contains(cell)
                     || (cell.x % 7 == 3) != wrong[(cell.x * 31 + cell.y) as usize % 256]
             });
-            naive.observe(&sighting, &model, idles, evidence.barren());
-            evidence.observe(&mut map, &sighting, &model, idles, |_| 0);
+            naive.observe(&sighting, &model, purpose, evidence.barren());
+            evidence.observe(&mut map, &sighting, &model, purpose, |_| 0);
             for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
                 if EXTENT.contains(cell) {
                     prop_assert_eq!(map.level(cell), naive.level(cell), "{} from {},{}", cell, x, y);
@@ -181,7 +191,7 @@ proptest! {
             }
             evidence.tick();
             let sighting = look(cell, radius, blocked);
-            evidence.observe(&mut weighed, &sighting, &SensorModel::truthful(), false, |_| 0);
+            evidence.observe(&mut weighed, &sighting, &SensorModel::truthful(), Purpose::None, |_| 0);
             taken.observe(&sighting);
             taken.stand(cell);
         }
@@ -199,7 +209,13 @@ fn seen(evidence: &mut Evidence, map: &mut Small, from: Cell, cell: Cell, blocke
         sighting.see_free(cell);
     }
     evidence.tick();
-    evidence.observe(map, &sighting, &SensorModel::rangers(), false, |_| 0);
+    evidence.observe(
+        map,
+        &sighting,
+        &SensorModel::rangers(),
+        Purpose::None,
+        |_| 0,
+    );
     map.level(cell)
 }
 
@@ -222,6 +238,23 @@ fn rangers_believe_a_wall_from_three_places_and_refute_one_that_was_told() {
     assert_eq!(look_at(27, 30), Level::Wall, "from afar");
     assert_eq!(look_at(28, 29), Level::Wall);
     assert_eq!(look_at(28, 31), Level::FreeAgain);
+}
+
+/// Who stands still to look sees the same error again: only what it asks for counts.
+#[test]
+fn a_robot_that_stands_still_votes_on_what_it_stands_there_for() {
+    let (mut map, mut evidence) = (map(), Evidence::new());
+    let (east, north) = (Cell::new(21, 20), Cell::new(20, 19));
+    let mut sighting = Sighting::new(Cell::new(20, 20));
+    sighting.see_blocked(east);
+    sighting.see_blocked(north);
+    for _ in 0..3 {
+        evidence.tick();
+        let purpose = Purpose::Sides(1 << Direction::East as u8);
+        evidence.observe(&mut map, &sighting, &SensorModel::rangers(), purpose, |_| 0);
+    }
+    assert_eq!(map.level(east), Level::Wall);
+    assert_eq!(map.level(north), Level::Doubtful);
 }
 
 #[test]
@@ -312,7 +345,7 @@ fn looks_that_contradict_the_map_for_long_are_told() {
                     is_wall(Cell::new(cell.x + off, cell.y)) != (is_wrong && cell != at)
                 });
                 evidence.tick();
-                evidence.observe(&mut map, &seen, &SensorModel::lidar(), false, |_| 0);
+                evidence.observe(&mut map, &seen, &SensorModel::lidar(), Purpose::None, |_| 0);
                 assert!(is_lost || !evidence.is_lost(), "{noise} %, at {x}");
                 if is_lost && evidence.is_lost() {
                     return;

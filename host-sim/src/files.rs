@@ -117,6 +117,21 @@ impl Drop for Draft {
     }
 }
 
+/// Writes a file as a whole, unless there is one already; says whether there was none.
+///
+/// # Errors
+/// As of [`Draft`]; then there is none.
+pub fn write_new(target: impl Into<PathBuf>, bytes: &[u8]) -> io::Result<bool> {
+    let mut draft = Draft::new(target)?;
+    draft.write_all(bytes)?;
+    let file = draft.file.take().ok_or(io::ErrorKind::NotFound)?;
+    match file.persist_noclobber(&draft.target) {
+        Ok(_) => Ok(true),
+        Err(failed) if failed.error.kind() == io::ErrorKind::AlreadyExists => Ok(false),
+        Err(failed) => Err(failed.error),
+    }
+}
+
 /// Writes a file as a whole; one that was there is replaced.
 ///
 /// # Errors

@@ -11,7 +11,9 @@ use planner_core::radio::LinkConfig;
 use planner_core::{AnyPlanner, Cell, Extent, RobotId};
 use serde::{Deserialize, Serialize};
 
-use crate::baselines::{Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, Rule, StrongMinPos};
+use crate::baselines::{
+    Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, Rule, StrongMinPos, Utility,
+};
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -35,6 +37,8 @@ pub enum PlannerKind {
     #[value(name = "minpos-strong")]
     #[serde(rename = "minpos-strong")]
     MinPosStrong,
+    /// The frontier cell of most unknown cells in sight, the nearer the better.
+    Utility,
     /// Brick & Mortar with long range vision: closes what nobody needs any more.
     Bmilrv,
 }
@@ -66,6 +70,7 @@ impl PlannerKind {
             | Self::Greedy
             | Self::MinPos
             | Self::MinPosStrong
+            | Self::Utility
             | Self::Bmilrv => false,
         }
     }
@@ -94,7 +99,12 @@ impl PlannerKind {
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),
             Self::LocalFrontiersSecondChance => Some(local_frontiers(true)),
-            Self::Closest | Self::Greedy | Self::MinPos | Self::MinPosStrong | Self::Bmilrv => None,
+            Self::Closest
+            | Self::Greedy
+            | Self::MinPos
+            | Self::MinPosStrong
+            | Self::Utility
+            | Self::Bmilrv => None,
         }
     }
 
@@ -124,6 +134,7 @@ impl PlannerKind {
             Self::Greedy => Box::new(Greedy::default()),
             Self::MinPos => Box::new(PaperMinPos::default()),
             Self::MinPosStrong => Box::new(StrongMinPos::default()),
+            Self::Utility => Box::new(Utility),
             Self::Bmilrv => {
                 let marks = Marks::new(extent, start);
                 return Ok(Box::new(Bmilrv::new(marks, id, extent, start, link)?));

@@ -72,8 +72,8 @@ fn another_seed_gives_another_trace() {
 
 #[test]
 fn the_searching_planners_see_everything_in_every_family() {
-    use PlannerKind::{Closest, Explorer, Greedy, MinPos, MinPosStrong};
-    for planner in [Explorer, Closest, Greedy, MinPos, MinPosStrong] {
+    use PlannerKind::{Closest, Explorer, Greedy, MinPos, MinPosStrong, Utility};
+    for planner in [Explorer, Closest, Greedy, MinPos, MinPosStrong, Utility] {
         for family in Family::ALL {
             let scenario = scenario(planner, family, 11);
             let (outcome, _) = run(&scenario);

@@ -126,6 +126,7 @@ impl Setup {
             Some(Starts::Center) => say(true, "start", "center".into()),
             Some(Starts::Corner) => say(true, "start", "corner".into()),
             Some(Starts::Random(_)) => say(true, "start", "random".into()),
+            Some(Starts::Spread(_)) => say(true, "start", "spread".into()),
             Some(Starts::At(cells)) => {
                 for cell in cells {
                     say(true, "start", cell.to_string());
@@ -196,7 +197,7 @@ impl Setup {
     pub fn from_address(address: &str) -> Result<Self, String> {
         let mut setup = Self::default();
         let mut starts = Vec::new();
-        let mut seeded = false;
+        let mut seeded = None;
         for part in address
             .trim_start_matches('#')
             .split('&')
@@ -214,7 +215,8 @@ impl Setup {
                 "start" => match value {
                     "center" => setup.starts = Some(Starts::Center),
                     "corner" => setup.starts = Some(Starts::Corner),
-                    "random" => seeded = true,
+                    "random" => seeded = Some(Starts::Random as fn(u64) -> Starts),
+                    "spread" => seeded = Some(Starts::Spread),
                     _ => starts.push(cell(value).ok_or_else(wrong)?),
                 },
                 "range" => setup.range = value.parse().map_err(|_| wrong())?,
@@ -223,8 +225,8 @@ impl Setup {
                 _ => setup.conditions.set(name, value).ok_or_else(wrong)?,
             }
         }
-        if seeded {
-            setup.starts = Some(Starts::Random(setup.conditions.seed));
+        if let Some(starts) = seeded {
+            setup.starts = Some(starts(setup.conditions.seed));
         }
         if !starts.is_empty() {
             setup.starts = Some(Starts::At(starts));

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, bail};
 
 use crate::shell::{Command, cargo, command};
-use crate::{c_interface, documents, firmware, fuzz, host, install, lab, output, worst};
+use crate::{c_interface, documents, firmware, fuzz, host, install, lab, output, slurm, worst};
 
 /// One thing that must hold.
 #[derive(Debug)]
@@ -161,6 +161,11 @@ const CHECKS: &[Check] = &[
         name: "commands",
         title: "the commands in the documents exist",
         run: documents::check,
+    },
+    Check {
+        name: "slurm",
+        title: "an array of jobs with one stopped midway gives the bytes of one run",
+        run: slurm::sweeps_as_one_run,
     },
     Check {
         name: "targets",

@@ -121,6 +121,28 @@ pub(crate) fn octomap() -> Result<()> {
     }
 }
 
+/// A scheduler: its daemons, its commands, and what they know each other by.
+pub(crate) fn slurm() -> Result<()> {
+    // Daemons lie where only root looks.
+    let is_there = |program: &str| {
+        let folders = std::env::var_os("PATH").unwrap_or_default();
+        std::env::split_paths(&folders)
+            .chain(["/usr/sbin".into()])
+            .any(|folder| folder.join(program).exists())
+    };
+    for (program, package) in [
+        ("slurmctld", "slurmctld"),
+        ("slurmd", "slurmd"),
+        ("sbatch", "slurm-client"),
+        ("munged", "munge"),
+    ] {
+        if !is_there(program) {
+            install(program, package)?;
+        }
+    }
+    Ok(())
+}
+
 /// A browser, and the program that drives it.
 pub(crate) fn chromium() -> Result<()> {
     package("chromium", "chromium")?;

@@ -38,6 +38,7 @@ mod lab;
 mod lines;
 mod output;
 mod shell;
+mod slurm;
 mod tools;
 mod worst;
 

@@ -10,6 +10,7 @@ mod groups;
 mod minpos;
 mod peer;
 pub mod surveys;
+mod utility;
 mod waves;
 
 pub use bmilrv::{Bmilrv, Marks};
@@ -17,4 +18,5 @@ pub use closest::Closest;
 pub use greedy::Greedy;
 pub use minpos::{MinPos, PaperMinPos, StrongMinPos};
 pub use peer::{Peer, Rule, Term};
+pub use utility::Utility;
 pub use waves::{Spot, Waves};

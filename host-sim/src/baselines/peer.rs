@@ -54,6 +54,8 @@ pub struct Peer<const TW: usize, const TH: usize> {
     map: Box<Map<TW, TH>>,
     link: Link<TH>,
     position: Cell,
+    /// The farthest that it has seen, in cells.
+    reach: u8,
     /// By id, as last heard.
     others: Vec<Option<Status>>,
     waves: Waves,
@@ -97,6 +99,7 @@ impl<const TW: usize, const TH: usize> Peer<TW, TH> {
             map,
             link,
             position: start,
+            reach: 0,
             others: Vec::new(),
             waves: Waves::default(),
             team: Vec::new(),
@@ -138,7 +141,8 @@ impl<const TW: usize, const TH: usize> Peer<TW, TH> {
         let place = self.team.partition_point(|&(id, _)| id < self.id);
         self.team.insert(place, (self.id, self.position));
         let closed = self.closed.iter().map(|&(cell, _)| cell);
-        self.waves.start(&self.map, closed, self.id, &self.team);
+        let me = (self.id, self.reach);
+        self.waves.start(&self.map, closed, me, &self.team);
         if let Some(goal) = self.rule.assign(&mut self.waves, &self.team) {
             self.goal = Some(self.waves.cell(goal));
             self.waves.way(self.position, goal, &mut self.way);
@@ -175,6 +179,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
             return Learnt::default();
         }
         self.position = sighting.centre();
+        let seen = sighting.free_cells().chain(sighting.blocked_cells());
+        let farthest = seen.map(|cell| cell.distance_squared(self.position)).max();
+        self.reach = self.reach.max(farthest.unwrap_or(0).isqrt() as u8);
         self.map.stand(self.position);
         let learnt = self.map.observe(sighting);
         self.link.look(sighting);

@@ -1,7 +1,7 @@
 //! Waves over the known free cells of a map, from every robot, step by step.
 
 use planner_core::tile::TileIndex;
-use planner_core::{Cell, Direction, Map, RobotId};
+use planner_core::{Cell, Direction, Extent, Map, RobotId};
 
 /// A cell of the padded grid of bits, as its number.
 pub type Spot = u32;
@@ -20,13 +20,18 @@ pub struct Waves {
     /// For spots that the own wave has reached: the index of the step into them.
     came: Vec<u8>,
     visits: u32,
+    /// The farthest that the robot has seen, in cells.
+    reach: u8,
 }
 
-/// Free and frontier cells as rows of bits, with a margin of blocked cells on
+/// Unknown, free and frontier cells as rows of bits, with a margin of blocked cells on
 /// all sides, so that the eight spots around a free one are always there.
 #[derive(Debug, Default)]
 struct Grid {
     stride: u32,
+    /// `None` before the first map.
+    extent: Option<Extent>,
+    unknown: Vec<u8>,
     free: Vec<u8>,
     frontier: Vec<u8>,
 }
@@ -44,15 +49,16 @@ struct Front {
 impl Waves {
     /// Takes in the map, without the `closed` cells, and starts a wave of
     /// distance 0 for each robot of `team`, which must be in the order of ids
-    /// and hold `me`.
+    /// and hold `me`, which has seen `reach` cells far.
     pub fn start<const TW: usize, const TH: usize>(
         &mut self,
         map: &Map<TW, TH>,
         closed: impl Iterator<Item = Cell>,
-        me: RobotId,
+        (me, reach): (RobotId, u8),
         team: &[(RobotId, Cell)],
     ) {
         self.grid.load(map, closed);
+        self.reach = reach;
         self.me = team.iter().position(|&(id, _)| id == me).unwrap_or(0);
         self.came.resize(self.grid.free.len() * 8, 0);
         self.fronts.resize_with(team.len(), Front::default);
@@ -75,6 +81,11 @@ impl Waves {
     /// Which of them is the one that decides.
     pub fn me(&self) -> usize {
         self.me
+    }
+
+    /// How many cells far the one that decides has seen.
+    pub fn reach(&self) -> u8 {
+        self.reach
     }
 
     /// Cells reached since the start, by all waves.
@@ -102,6 +113,20 @@ impl Waves {
     /// Whether a spot is a frontier.
     pub fn is_frontier(&self, spot: Spot) -> bool {
         bit(&self.grid.frontier, spot)
+    }
+
+    /// Whether a cell of the grid is unknown.
+    pub fn is_unknown(&self, cell: Cell) -> bool {
+        self.grid.holds(cell) && bit(&self.grid.unknown, self.grid.spot(cell))
+    }
+
+    /// Whether a cell is a known obstacle, or outside of the grid.
+    pub fn is_obstacle(&self, cell: Cell) -> bool {
+        let Grid { unknown, free, .. } = &self.grid;
+        !self.grid.holds(cell) || {
+            let spot = self.grid.spot(cell);
+            !bit(unknown, spot) && !bit(free, spot)
+        }
     }
 
     /// All frontier spots, row by row.
@@ -161,17 +186,20 @@ impl Grid {
         let (columns, rows) = map.tile_extent();
         let bytes = usize::from(columns) + 2;
         self.stride = 8 * bytes as u32;
-        for bits in [&mut self.free, &mut self.frontier] {
+        self.extent = Some(map.extent());
+        for bits in [&mut self.unknown, &mut self.free, &mut self.frontier] {
             bits.clear();
             bits.resize(bytes * (8 * usize::from(rows) + 2), 0);
         }
         for y in 0..rows {
             for x in 0..columns {
                 let at = TileIndex::new(x, y);
+                let unknown = (!map.tile(at).known()).to_le_bytes();
                 let free = map.tile(at).free().to_le_bytes();
                 let frontier = map.frontier(at).to_le_bytes();
                 let first = (8 * usize::from(y) + 1) * bytes + 1 + usize::from(x);
                 for row in 0..8 {
+                    self.unknown[first + row * bytes] = unknown[row];
                     self.free[first + row * bytes] = free[row];
                     self.frontier[first + row * bytes] = frontier[row];
                 }
@@ -182,6 +210,10 @@ impl Grid {
             clear(&mut self.free, spot);
             clear(&mut self.frontier, spot);
         }
+    }
+
+    fn holds(&self, cell: Cell) -> bool {
+        self.extent.is_some_and(|extent| extent.contains(cell))
     }
 
     fn spot(&self, cell: Cell) -> Spot {

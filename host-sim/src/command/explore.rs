@@ -40,8 +40,8 @@ pub(crate) struct Explore {
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..))]
     robots: u8,
     /// Where robots start: X,Y (column and row from 0 at the top left; repeat
-    /// it for several), center, corner or random. Default: the digits in a text
-    /// map, else center.
+    /// it for several), center, corner, random, or spread: far apart. Default: the
+    /// digits in a text map, else center.
     #[arg(long, value_name = "WHERE")]
     start: Vec<Start>,
     /// Sensor range in cells, 1 to 15.
@@ -78,6 +78,7 @@ enum Start {
     Center,
     Corner,
     Random,
+    Spread,
 }
 
 impl FromStr for Start {
@@ -88,11 +89,14 @@ impl FromStr for Start {
             "center" | "centre" => Self::Center,
             "corner" => Self::Corner,
             "random" => Self::Random,
+            "spread" => Self::Spread,
             _ => text
                 .split_once(',')
                 .and_then(|(x, y)| Some(Cell::new(x.trim().parse().ok()?, y.trim().parse().ok()?)))
                 .map(Self::Cell)
-                .ok_or("expected X,Y in cells (for example 3,4), center, corner or random")?,
+                .ok_or(
+                    "expected X,Y in cells (for example 3,4), center, corner, random or spread",
+                )?,
         })
     }
 }
@@ -202,19 +206,21 @@ impl Explore {
     fn starts(&self, world: &World) -> Result<Starts, &'static str> {
         let cells = |start: &Start| match start {
             Start::Cell(cell) => Some(*cell),
-            Start::Center | Start::Corner | Start::Random => None,
+            Start::Center | Start::Corner | Start::Random | Start::Spread => None,
         };
+        let seed = self.conditions.seed().unwrap_or(SEED);
         Ok(match self.start[..] {
             [] => world.default_starts(),
             [Start::Center] => Starts::Center,
             [Start::Corner] => Starts::Corner,
-            [Start::Random] => Starts::Random(self.conditions.seed().unwrap_or(SEED)),
+            [Start::Random] => Starts::Random(seed),
+            [Start::Spread] => Starts::Spread(seed),
             _ => Starts::At(
                 self.start
                     .iter()
                     .map(cells)
                     .collect::<Option<_>>()
-                    .ok_or("--start: center, corner and random stand alone; give either one of them, or one or more X,Y")?,
+                    .ok_or("--start: center, corner, random and spread stand alone; give either one of them, or one or more X,Y")?,
             ),
         })
     }

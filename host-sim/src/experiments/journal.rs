@@ -7,9 +7,12 @@ use std::sync::Mutex;
 
 use thiserror::Error;
 
-use super::execute::Shard;
 use super::row::Row;
+use super::shard::Shard;
 use crate::files;
+
+/// The folder of the shards' files in an output folder.
+pub(super) const PARTS: &str = "parts";
 
 /// The rows of one shard, in `parts/I-of-N.csv` of an output folder. Each row
 /// goes to the file as soon as it is known, in one piece.
@@ -39,24 +42,24 @@ pub enum JournalError {
         problem: csv::Error,
     },
     /// See the message.
-    #[error("{} holds runs already; go on with --resume, or choose another folder with --out", path.display())]
-    Exists {
+    #[error("{}: holds world {world}, which another part holds too", path.display())]
+    Twice {
         /// Which file.
         path: PathBuf,
+        /// The number of the world in the plan.
+        world: usize,
     },
 }
 
 impl Journal {
-    /// Opens the journal of a shard; with `resume` one that has rows already.
+    /// Goes on with the journal of a shard, or begins it. A row that an interruption has cut
+    /// is dropped.
     ///
     /// # Errors
-    /// A file that cannot be written, or that is there without `resume`.
-    pub fn open(out: &Path, shard: Shard, resume: bool) -> Result<Self, JournalError> {
-        let folder = out.join("parts");
+    /// A file that cannot be written.
+    pub fn open(out: &Path, shard: Shard) -> Result<Self, JournalError> {
+        let folder = out.join(PARTS);
         let path = folder.join(format!("{shard}.csv"));
-        if path.exists() && !resume {
-            return Err(JournalError::Exists { path });
-        }
         let open = || {
             fs::create_dir_all(&folder)?;
             if path.exists() {
@@ -90,36 +93,60 @@ impl Journal {
         })
     }
 
+    /// Its rows.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that holds something else.
+    pub fn read(&self) -> Result<Vec<Row>, JournalError> {
+        read(&self.path)
+    }
+
     /// The rows of all shards in an output folder; none if it has no journal.
     ///
     /// # Errors
     /// Files that cannot be read, or that hold something else.
     pub fn read_all(out: &Path) -> Result<Vec<Row>, JournalError> {
-        let folder = out.join("parts");
-        let Ok(entries) = fs::read_dir(&folder) else {
-            return Ok(Vec::new());
-        };
         let mut rows = Vec::new();
-        for entry in entries {
-            let path = entry.map(|entry| entry.path());
-            let path = path.map_err(|problem| JournalError::Io {
-                path: folder.clone(),
-                problem,
-            })?;
-            match fs::read_to_string(&path) {
-                Err(problem) => return Err(JournalError::Io { path, problem }),
-                Ok(text) => {
-                    let mut reader = csv::Reader::from_reader(whole_lines(&text).as_bytes());
-                    for row in reader.deserialize() {
-                        rows.push(row.map_err(|problem| JournalError::Format {
-                            path: path.clone(),
-                            problem,
-                        })?);
-                    }
-                }
-            }
+        for path in parts(out, "csv")? {
+            rows.append(&mut read(&path)?);
         }
         Ok(rows)
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<Row>, JournalError> {
+    let text = fs::read_to_string(path).map_err(|problem| JournalError::Io {
+        path: path.into(),
+        problem,
+    })?;
+    let mut reader = csv::Reader::from_reader(whole_lines(&text).as_bytes());
+    let rows: Result<Vec<Row>, csv::Error> = reader.deserialize().collect();
+    rows.map_err(|problem| JournalError::Format {
+        path: path.into(),
+        problem,
+    })
+}
+
+/// The files of all shards in an output folder that end in `.ending`, by name.
+pub(super) fn parts(out: &Path, ending: &str) -> Result<Vec<PathBuf>, JournalError> {
+    let folder = out.join(PARTS);
+    let list = || -> io::Result<Vec<PathBuf>> {
+        let mut paths = Vec::new();
+        for entry in fs::read_dir(&folder)? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|found| found == ending) {
+                paths.push(path);
+            }
+        }
+        paths.sort();
+        Ok(paths)
+    };
+    match list() {
+        Err(problem) if problem.kind() == io::ErrorKind::NotFound => Ok(Vec::new()),
+        listed => listed.map_err(|problem| JournalError::Io {
+            path: folder,
+            problem,
+        }),
     }
 }
 

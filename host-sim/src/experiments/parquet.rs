@@ -146,6 +146,8 @@ fn columns(rows: &[Row]) -> Vec<(&'static str, Column)> {
         ("reachable_cells", integer(|row| row.reachable_cells.into())),
         ("seen_cells", integer(|row| row.seen_cells.into())),
         ("stopped_robots", integer(|row| row.stopped_robots.into())),
+        ("robot_ticks", integer(|row| row.robot_ticks as i64)),
+        ("waited_ticks", integer(|row| row.waited_ticks as i64)),
         ("steps_mean", real(|row| row.steps_mean)),
         ("steps_sd", real(|row| row.steps_sd)),
         ("steps_max", integer(|row| row.steps_max.into())),

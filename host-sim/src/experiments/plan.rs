@@ -7,7 +7,6 @@ use clap::ValueEnum;
 use planner_core::Cell;
 use serde::{Deserialize, Serialize};
 
-use super::row::Key;
 use crate::planners::PlannerKind;
 use crate::scenario::grid::Scenario;
 use crate::scenario::{MediumKind, Preset, Trouble};
@@ -60,6 +59,9 @@ pub enum Place {
     Random,
     /// Each on a cell that is drawn.
     Scattered,
+    /// The first on a cell that is drawn, each further one as far as possible from those
+    /// before.
+    Spread,
     /// Together, nearest to the centre; further placings on the next nearest
     /// cells.
     Center,
@@ -139,15 +141,6 @@ impl Plan {
     pub fn runs(&self) -> usize {
         self.sites.len() * self.setups().len()
     }
-
-    /// What tells each run from the others, in the order of the plan.
-    pub fn keys(&self) -> impl Iterator<Item = Key> {
-        let setups = self.setups();
-        self.sites.iter().flat_map(move |site| {
-            let of_site: Vec<Key> = setups.iter().map(|setup| Key::new(site, setup)).collect();
-            of_site
-        })
-    }
 }
 
 impl Site {
@@ -207,8 +200,9 @@ impl Setup {
 
     fn starts(&self, world: &World) -> Result<Vec<Cell>, WorldError> {
         let drawn = self.seed + u64::from(self.start);
-        let together = match self.place {
+        let starts = match self.place {
             Place::Random => Starts::Random(drawn),
+            Place::Spread => Starts::Spread(drawn),
             Place::Center => self.beside(world, Starts::Center)?,
             Place::Corner => self.beside(world, Starts::Corner)?,
             Place::Map => self.beside(world, world.default_starts())?,
@@ -219,7 +213,7 @@ impl Setup {
                 return Ok(cells.collect::<Result<Vec<_>, _>>()?.concat());
             }
         };
-        world.place(self.robots.into(), &together, false)
+        world.place(self.robots.into(), &starts, false)
     }
 
     /// The first placing is at `starts`, each further one on the next cell from

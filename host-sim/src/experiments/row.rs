@@ -72,6 +72,10 @@ pub struct Row {
     pub seen_cells: u32,
     /// Robots that had stopped at the end.
     pub stopped_robots: u32,
+    /// Ticks of all robots until they stopped.
+    pub robot_ticks: u64,
+    /// Those of them in which the robot waited: it neither tried a step nor turned to look.
+    pub waited_ticks: u64,
     /// Cells walked by a robot, on average.
     pub steps_mean: f64,
     /// Standard deviation of that among the robots.
@@ -94,11 +98,9 @@ pub struct Row {
     pub assignment_max: Option<f64>,
 }
 
-/// What tells a run from all others.
+/// What tells a run from the others in the same world.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
-    world: String,
-    extent: (u16, u16),
     planner: PlannerKind,
     robots: u8,
     place: Place,
@@ -113,12 +115,9 @@ pub struct Key {
 }
 
 impl Key {
-    /// The run of `setup` at `site`.
-    pub fn new(site: &Site, setup: &Setup) -> Self {
-        let Extent { width, height } = site.extent();
+    /// The run of `setup`.
+    pub fn new(setup: &Setup) -> Self {
         Self {
-            world: site.name(),
-            extent: (width, height),
             planner: setup.planner,
             robots: setup.robots,
             place: setup.place,
@@ -140,19 +139,24 @@ impl Key {
 }
 
 /// What runs are compared by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 pub enum Metric {
     /// Ticks until 90 % of the reachable cells were seen.
     #[value(name = "90")]
+    #[serde(rename = "90")]
     Seen90,
     /// Ticks until 99 % were seen.
     #[value(name = "99")]
+    #[serde(rename = "99")]
     Seen99,
     /// Ticks until all were seen.
     #[value(name = "seen")]
+    #[serde(rename = "seen")]
+    #[default]
     Seen,
     /// Ticks until every robot had stopped.
     #[value(name = "stopped")]
+    #[serde(rename = "stopped")]
     Stopped,
 }
 
@@ -199,6 +203,10 @@ impl Row {
                 .sum::<f64>()
                 / robots
         };
+        let sum = |of: fn(&RobotOutcome) -> u32| -> u64 {
+            let robots = outcome.robots.iter();
+            robots.map(|robot| u64::from(of(robot))).sum()
+        };
         let stopped = outcome.robots.iter().filter(|robot| robot.stop.is_some());
         Self {
             family: site.family(),
@@ -230,6 +238,8 @@ impl Row {
             reachable_cells: outcome.reachable_cells,
             seen_cells: outcome.seen_cells,
             stopped_robots: stopped.count() as u32,
+            robot_ticks: sum(|robot| robot.active_ticks),
+            waited_ticks: sum(|robot| robot.waited_ticks),
             steps_mean,
             steps_sd: (squares.sum::<f64>() / robots).sqrt(),
             steps_max: outcome
@@ -251,11 +261,9 @@ impl Row {
         }
     }
 
-    /// What tells this run from all others.
+    /// What tells this run from the others in its world.
     pub fn key(&self) -> Key {
         Key {
-            world: self.world.clone(),
-            extent: (self.width, self.height),
             planner: self.planner,
             robots: self.robots,
             place: self.place,

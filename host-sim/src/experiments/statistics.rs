@@ -1,10 +1,14 @@
 //! Pairs of runs, and how sure one can be of what they say.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+use std::hash::{Hash, Hasher};
 
 use distrs::StudentsT;
+use serde::{Deserialize, Serialize};
 
-use super::row::{Key, Metric, Row};
+use super::plan::Setup;
+use super::row::{Metric, Row};
+use super::totals::Totals;
 use crate::draw::chart::Point;
 use crate::planners::PlannerKind;
 use crate::scenario::Preset;
@@ -93,21 +97,23 @@ pub struct Comparison {
     /// The number of robots; `None`: all.
     pub robots: Option<u8>,
     /// Runs of the planner.
-    pub runs: usize,
+    pub runs: u64,
     /// Those of them in which something reachable was left unseen.
-    pub incomplete: usize,
+    pub incomplete: u64,
     /// Those of them in which a robot claimed falsely.
-    pub false_claims: usize,
+    pub false_claims: u64,
+    /// Share of the ticks of all robots until they stopped in which the robot waited.
+    pub waiting: Option<f64>,
     /// The planner's own ticks, over its complete runs.
     pub ticks: Option<Interval>,
     /// Pairs in which both were complete.
-    pub pairs: usize,
+    pub pairs: u64,
     /// The planner's ticks over the reference's, over the pairs.
     pub ratio: Option<Interval>,
 }
 
 /// Runs under different conditions are never thrown together.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Sensor range in cells.
     pub range: u8,
@@ -121,8 +127,34 @@ pub struct Conditions {
     pub trouble: String,
 }
 
+/// A share is a number.
+impl Eq for Conditions {}
+
+impl Hash for Conditions {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        let Self {
+            range,
+            sync,
+            loss,
+            preset,
+            trouble,
+        } = self;
+        (range, sync, loss.to_bits(), preset, trouble).hash(state);
+    }
+}
+
 impl Conditions {
-    fn of(row: &Row) -> Self {
+    pub(super) fn of_setup(setup: &Setup) -> Self {
+        Self {
+            range: setup.range,
+            sync: setup.sync,
+            loss: setup.loss,
+            preset: setup.preset,
+            trouble: setup.trouble.to_string(),
+        }
+    }
+
+    pub(super) fn of(row: &Row) -> Self {
         Self {
             range: row.range,
             sync: row.sync,
@@ -133,65 +165,46 @@ impl Conditions {
     }
 }
 
+/// What tables have a line or a column for, in their order.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axes {
+    pub(super) conditions: Vec<Conditions>,
+    pub(super) planners: Vec<PlannerKind>,
+    pub(super) families: Vec<String>,
+    /// In ascending order.
+    pub(super) robots: Vec<u8>,
+}
+
+impl Axes {
+    /// What there is among the rows.
+    pub fn of_rows(rows: &[Row]) -> Self {
+        Self {
+            conditions: in_order(rows, Conditions::of),
+            planners: in_order(rows, |row| row.planner),
+            families: in_order(rows, |row| row.family.clone()),
+            robots: in_order(rows, |row| row.robots),
+        }
+        .sorted()
+    }
+
+    pub(super) fn sorted(mut self) -> Self {
+        self.robots.sort_unstable();
+        self
+    }
+}
+
 /// Compares every planner in `rows` with `reference`: by conditions and
 /// planner, for each number of robots and all, for all families and each one.
 pub fn compare(rows: &[Row], reference: PlannerKind, metric: Metric) -> Vec<Comparison> {
-    let references: HashMap<Key, f64> = rows
-        .iter()
-        .filter(|row| row.planner == reference)
-        .filter_map(|row| Some((row.key(), ticks(row, metric)?)))
-        .collect();
-    let reference_of = |row: &Row| references.get(&row.key().with_planner(reference)).copied();
-    let families = in_order(rows, |row| Some(row.family.clone()));
-    let mut robots = in_order(rows, |row| Some(row.robots));
-    robots.sort_unstable();
-
-    let mut comparisons = Vec::new();
-    for conditions in in_order(rows, Conditions::of) {
-        for planner in in_order(rows, |row| row.planner) {
-            for &robots in robots.iter().chain([&None]) {
-                for family in [&None].into_iter().chain(&families) {
-                    let group = rows.iter().filter(|row| {
-                        row.planner == planner
-                            && Conditions::of(row) == conditions
-                            && robots.is_none_or(|robots| row.robots == robots)
-                            && family.as_ref().is_none_or(|family| row.family == *family)
-                    });
-                    let own = group
-                        .clone()
-                        .filter_map(|row| sample(row, ticks(row, metric)));
-                    let ratios: Vec<(&str, f64)> = group
-                        .clone()
-                        .filter_map(|row| {
-                            sample(row, Some(ticks(row, metric)? / reference_of(row)?))
-                        })
-                        .collect();
-                    comparisons.push(Comparison {
-                        planner,
-                        conditions: conditions.clone(),
-                        family: family.clone(),
-                        robots,
-                        runs: group.clone().count(),
-                        incomplete: group.clone().filter(|row| !row.complete).count(),
-                        false_claims: group.clone().filter(|row| row.false_claims > 0).count(),
-                        ticks: geometric_mean(own),
-                        pairs: ratios.len(),
-                        ratio: geometric_mean(ratios),
-                    });
-                }
-            }
-        }
+    let mut worlds: BTreeMap<&str, Vec<Row>> = BTreeMap::new();
+    for row in rows {
+        worlds.entry(&row.world).or_default().push(row.clone());
     }
-    comparisons
-}
-
-/// Ticks by the metric; at least 1, for what is seen at once has no logarithm.
-fn ticks(row: &Row, metric: Metric) -> Option<f64> {
-    row.metric(metric).map(|ticks| f64::from(ticks.max(1)))
-}
-
-fn sample(row: &Row, value: Option<f64>) -> Option<(&str, f64)> {
-    Some((row.world.as_str(), value?))
+    let mut totals = Totals::default();
+    for rows in worlds.values() {
+        totals.add_world(rows, reference, metric);
+    }
+    totals.comparisons(&Axes::of_rows(rows))
 }
 
 /// The different values, in the order in which they first come.

@@ -72,6 +72,10 @@ pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metr
                     "0 of {all} runs of {planner} left something unseen.\n"
                 );
             }
+            if rows.iter().any(|row| row.waiting > Some(0.0)) {
+                let _ = writeln!(text, "Robot-ticks of {planner} spent waiting:\n");
+                table(&mut text, &rows, |row| percent(row.waiting));
+            }
             if rows.iter().any(|row| row.false_claims > 0) {
                 let _ = writeln!(text, "Runs of {planner} with a false claim:\n");
                 table(&mut text, &rows, |row| share(row.false_claims, row.runs));
@@ -128,11 +132,12 @@ fn table(text: &mut String, rows: &[&Comparison], cell: impl Fn(&Comparison) -> 
     text.push('\n');
 }
 
-fn share(some: usize, all: usize) -> String {
-    match all {
-        0 => "–".into(),
-        all => format!("{:.1} %", 100.0 * some as f64 / all as f64),
-    }
+fn share(some: u64, all: u64) -> String {
+    percent((all > 0).then(|| some as f64 / all as f64))
+}
+
+fn percent(share: Option<f64>) -> String {
+    share.map_or("–".into(), |share| format!("{:.1} %", 100.0 * share))
 }
 
 fn cell(interval: Option<Interval>, digits: usize) -> String {
@@ -149,7 +154,7 @@ fn cell(interval: Option<Interval>, digits: usize) -> String {
 pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
     let mut csv = Csv::new(
         "metric,range,sync,loss,preset,trouble,planner,family,robots,runs,incomplete,false_claims,\
-         ticks,ticks_low,ticks_high,pairs,ratio,ratio_low,ratio_high",
+         waiting,ticks,ticks_low,ticks_high,pairs,ratio,ratio_low,ratio_high",
     );
     for row in comparisons {
         let Conditions {
@@ -160,6 +165,9 @@ pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
             trouble,
         } = &row.conditions;
         let robots = row.robots.map_or("all".into(), |robots| robots.to_string());
+        let waiting = row
+            .waiting
+            .map_or_else(String::new, |share| share.to_string());
         let ([ticks, ticks_low, ticks_high], [ratio, low, high]) =
             (fields(row.ticks), fields(row.ratio));
         csv.add([
@@ -175,6 +183,7 @@ pub fn comparisons_csv(comparisons: &[Comparison], metric: Metric) -> String {
             &row.runs,
             &row.incomplete,
             &row.false_claims,
+            &waiting,
             &ticks,
             &ticks_low,
             &ticks_high,

@@ -28,31 +28,30 @@ fn plan() -> Plan {
     }
 }
 
-fn run_into(out: &Path, shard: Shard, resume: bool) {
-    let journal = Journal::open(out, shard, resume).unwrap();
+fn run_into(out: &Path, shard: Shard) {
+    let order = Order::of(&plan());
+    let journal = Journal::open(out, shard).unwrap();
     let done = Journal::read_all(out).unwrap();
-    let done: HashSet<Key> = done.iter().map(Row::key).collect();
-    execute(&plan(), shard, &done, &|row, _| journal.add(&row)).unwrap();
+    let done: HashSet<usize> = done.iter().filter_map(|row| order.place(row)).collect();
+    let is_done = |world, run| done.contains(&(world * order.runs_a_world() + run));
+    execute(&plan(), shard, &is_done, &|row, _| journal.add(&row)).unwrap();
 }
 
 /// All rows in a folder, in an order that does not hang on threads.
 fn rows_in(out: &Path) -> Vec<Row> {
-    let mut rows = Journal::read_all(out).unwrap();
-    let keys: Vec<Key> = plan().keys().collect();
-    rows.sort_by_key(|row| keys.iter().position(|key| *key == row.key()));
-    rows
+    Order::of(&plan()).sort(Journal::read_all(out).unwrap())
 }
 
 #[test]
 fn shards_and_an_interrupted_run_give_the_rows_of_one_run() {
     let whole = tempfile::tempdir().unwrap();
-    run_into(whole.path(), Shard::ALL, false);
+    run_into(whole.path(), Shard::ALL);
     let rows = rows_in(whole.path());
     assert_eq!(rows.len(), plan().runs());
 
     let shared = tempfile::tempdir().unwrap();
     for shard in ["1/3", "2/3", "3/3"] {
-        run_into(shared.path(), shard.parse().unwrap(), false);
+        run_into(shared.path(), shard.parse().unwrap());
     }
     assert_eq!(rows_in(shared.path()), rows);
 
@@ -61,16 +60,159 @@ fn shards_and_an_interrupted_run_give_the_rows_of_one_run() {
     let text = std::fs::read_to_string(whole.path().join(part)).unwrap();
     std::fs::create_dir(cut.path().join("parts")).unwrap();
     std::fs::write(cut.path().join(part), &text[..text.len() / 2]).unwrap();
-    run_into(cut.path(), Shard::ALL, true);
+    run_into(cut.path(), Shard::ALL);
     assert_eq!(rows_in(cut.path()), rows);
 }
 
 #[test]
-fn a_folder_with_runs_is_not_overwritten() {
+fn every_world_is_of_one_shard_and_shards_have_as_many_of_each_family() {
+    let seeds = 1..=10;
+    let sites = seeds.flat_map(|seed| {
+        Family::ALL.map(|family| Site::Generated(Recipe::new(family, Extent::new(16, 16), seed)))
+    });
+    let plan = Plan {
+        sites: sites.collect(),
+        ..plan()
+    };
+    for count in [1, 2, 3, 8, 16, 100] {
+        let mut all = Vec::new();
+        for index in 1..=count {
+            let shard: Shard = format!("{index}/{count}").parse().unwrap();
+            let worlds = shard.of(&plan);
+            for family in Family::ALL {
+                let name = family.to_string();
+                let of = |&&site: &&usize| plan.sites[site].family() == name;
+                let found = worlds.iter().filter(of).count();
+                assert!((10 / count..=10_usize.div_ceil(count)).contains(&found));
+            }
+            all.extend(worlds);
+        }
+        all.sort_unstable();
+        assert_eq!(all, (0..80).collect::<Vec<_>>());
+    }
+}
+
+fn settings() -> Settings {
+    Settings {
+        maps: Vec::new(),
+        families: vec![Family::Cave, Family::Rooms, Family::Open],
+        worlds: 4,
+        size: (16, 16),
+        planners: vec![Explorer, Closest, MinPos],
+        reference: MinPos,
+        robots: vec![3, 1],
+        place: Place::Random,
+        starts: 2,
+        medium: MediumKind::Ideal,
+        sync: vec![1, 20],
+        loss: vec![0.0],
+        range: vec![3],
+        trouble: Trouble::default(),
+        preset: Preset::default(),
+        seed: 4,
+        metric: Metric::Stopped,
+        summary_only: true,
+        program: String::new(),
+    }
+}
+
+#[test]
+fn worlds_added_up_by_shards_give_the_tables_of_all_rows() {
+    let settings = settings();
+    let plan = settings.plan([]);
+    let rows = std::sync::Mutex::new(Vec::new());
+    let shards = tempfile::tempdir().unwrap();
+    for shard in ["1/3", "2/3", "3/3"] {
+        let shard: Shard = shard.parse().unwrap();
+        // Ended early once, before the second half of its worlds.
+        for worlds in [shard.of(&plan).len() / 2, usize::MAX] {
+            let tally = Tally::open(shards.path(), shard, &settings).unwrap();
+            let counted = tally.counted().worlds;
+            let late: Vec<usize> = shard.of(&plan).into_iter().skip(worlds).collect();
+            let is_done = |world, _| counted.contains(&world) || late.contains(&world);
+            execute(&plan, shard, &is_done, &|row, _| {
+                rows.lock().unwrap().push(row.clone());
+                tally.add(row)
+            })
+            .unwrap();
+            tally.write().unwrap();
+        }
+    }
+    let order = settings.order();
+    let rows = order.sort(rows.into_inner().unwrap());
+    assert_eq!(rows.len(), order.runs());
+    let mut counted = Counted::default();
+    counted.read_all(shards.path()).unwrap();
+    assert_eq!(counted.worlds.len(), 12);
+    let summed = counted.totals.comparisons(&settings.axes());
+    let compared = compare(&rows, MinPos, Metric::Stopped);
+    assert_eq!(summed, compared);
+    let again = counted.read_all(shards.path());
+    assert!(matches!(again, Err(JournalError::Twice { .. })));
+
+    // Whole numbers say what floating ones do.
+    for comparison in compared {
+        let of = |row: &&Row| {
+            row.planner == comparison.planner
+                && row.sync == comparison.conditions.sync
+                && comparison
+                    .family
+                    .as_ref()
+                    .is_none_or(|family| row.family == *family)
+                && comparison.robots.is_none_or(|robots| row.robots == robots)
+        };
+        let ticks = rows.iter().filter(of).filter_map(|row| {
+            Some((
+                row.world.as_str(),
+                row.metric(Metric::Stopped)?.max(1).into(),
+            ))
+        });
+        let (own, plain) = (comparison.ticks.unwrap(), geometric_mean(ticks).unwrap());
+        for (own, plain) in [
+            (own.mean, plain.mean),
+            (own.low, plain.low),
+            (own.high, plain.high),
+        ] {
+            assert!((own / plain - 1.0).abs() < 1e-6, "{own} {plain}");
+        }
+        let sum = |of_row: fn(&Row) -> u64| rows.iter().filter(of).map(of_row).sum::<u64>() as f64;
+        let waiting = sum(|row| row.waited_ticks) / sum(|row| row.robot_ticks);
+        assert_eq!(comparison.waiting, Some(waiting));
+    }
+}
+
+#[test]
+fn a_folder_belongs_to_one_plan() {
     let out = tempfile::tempdir().unwrap();
-    run_into(out.path(), "1/30".parse().unwrap(), false);
-    let again = Journal::open(out.path(), "1/30".parse().unwrap(), false);
-    assert!(matches!(again, Err(JournalError::Exists { .. })));
+    settings().claim(out.path()).unwrap();
+    settings().claim(out.path()).unwrap();
+    assert_eq!(Settings::read(out.path()).unwrap(), settings());
+    let refusal = |change: fn(&mut Settings)| {
+        let mut other = settings();
+        change(&mut other);
+        other.claim(out.path()).unwrap_err().to_string()
+    };
+    let seed = refusal(|settings| settings.seed = 5);
+    assert!(seed.contains("--seed is 4 there and 5 here"), "{seed}");
+    let robots = refusal(|settings| settings.robots = vec![3]);
+    assert!(
+        robots.contains("--robots is [3,1] there and [3] here"),
+        "{robots}"
+    );
+    let trouble = refusal(|settings| settings.trouble.false_walls = 0.5);
+    assert!(
+        trouble.contains("--false-walls is 0.0 there and 0.5"),
+        "{trouble}"
+    );
+
+    let old = tempfile::tempdir().unwrap();
+    std::fs::create_dir(old.path().join("parts")).unwrap();
+    let unknown = settings().claim(old.path());
+    assert!(matches!(unknown, Err(PlanError::Missing { .. })));
+    assert!(matches!(
+        Settings::read(old.path()),
+        Err(PlanError::Missing { .. })
+    ));
 }
 
 #[test]
@@ -103,12 +245,13 @@ fn statistics_are_those_of_a_calculation_by_hand() {
 #[test]
 fn pairs_are_of_the_same_run_and_leave_out_what_is_not_complete() {
     let out = tempfile::tempdir().unwrap();
-    run_into(out.path(), Shard::ALL, false);
+    run_into(out.path(), Shard::ALL);
     let mut rows = rows_in(out.path());
     // Twice the ticks of the reference, but for one run that is not complete.
     for number in 0..rows.len() {
         let reference = rows[number].key().with_planner(MinPos);
-        let reference = rows.iter().find(|row| row.key() == reference).unwrap();
+        let is_reference = |row: &&Row| row.key() == reference && row.world == rows[number].world;
+        let reference = rows.iter().find(is_reference).unwrap();
         let ticks = reference.ticks_to_seen.map(|ticks| 2 * ticks.max(1));
         if rows[number].planner == Explorer {
             rows[number].ticks_to_seen = ticks;
@@ -121,10 +264,10 @@ fn pairs_are_of_the_same_run_and_leave_out_what_is_not_complete() {
     let all =
         |of: &&Comparison| of.planner == Explorer && of.family.is_none() && of.robots.is_none();
     for comparison in comparisons.iter().filter(all) {
-        assert!((comparison.ratio.unwrap().mean - 2.0).abs() < 1e-9);
+        assert!((comparison.ratio.unwrap().mean - 2.0).abs() < 1e-8);
         assert_eq!(comparison.pairs, comparison.runs - comparison.incomplete);
     }
-    let incomplete: usize = comparisons.iter().filter(all).map(|of| of.incomplete).sum();
+    let incomplete: u64 = comparisons.iter().filter(all).map(|of| of.incomplete).sum();
     assert_eq!(incomplete, 1);
     let there = comparisons.iter().find(|of| of.incomplete == 1).unwrap();
     assert_eq!(there.conditions.sync, sync);
@@ -139,7 +282,7 @@ fn pairs_are_of_the_same_run_and_leave_out_what_is_not_complete() {
 fn a_parquet_file_has_the_columns_and_rows_of_the_csv() {
     use ::parquet::file::reader::{FileReader, SerializedFileReader};
     let out = tempfile::tempdir().unwrap();
-    run_into(out.path(), "1/9".parse().unwrap(), false);
+    run_into(out.path(), "1/3".parse().unwrap());
     let rows = rows_in(out.path());
     let path = out.path().join("runs.parquet");
     write_parquet(&rows, std::fs::File::create(&path).unwrap()).unwrap();
@@ -181,7 +324,9 @@ fn every_figure_can_be_drawn() {
         measured.push(drawn);
     }
     let page = page(&measured, &[]);
-    for id in ["fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "minpos"] {
+    for id in [
+        "fig6", "fig7", "fig8", "fig9", "fig10", "fig11", "spread", "minpos",
+    ] {
         assert!(page.contains(&format!("<img src=\"{id}.svg\"")));
     }
 }

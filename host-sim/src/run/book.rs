@@ -43,6 +43,8 @@ impl Book {
             robots: vec![
                 RobotOutcome {
                     steps: 0,
+                    active_ticks: 0,
+                    waited_ticks: 0,
                     blocked_steps: 0,
                     cells_known: 0,
                     cells_missed: 0,
@@ -92,12 +94,17 @@ impl Book {
             noted.sent.frames += step.sent.frames;
             noted.sent.bytes += step.sent.bytes;
             noted.stop = None;
+            noted.active_ticks += 1;
             match step.deed {
                 Deed::Moved(_) => noted.steps += 1,
                 Deed::Blocked(_) => noted.blocked_steps += 1,
                 Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded => {}
-                Deed::Waited | Deed::Looked(_) => {}
-                Deed::Stopped(stop) => noted.stop = Some(stop),
+                Deed::Looked(_) => {}
+                Deed::Waited => noted.waited_ticks += 1,
+                Deed::Stopped(stop) => {
+                    noted.active_ticks -= 1;
+                    noted.stop = Some(stop);
+                }
             }
             let most = &mut self.outcome.max_work_per_tick;
             *most = step.work.max(*most);

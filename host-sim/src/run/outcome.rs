@@ -41,6 +41,10 @@ pub struct Outcome {
 pub struct RobotOutcome {
     /// Cells walked.
     pub steps: u32,
+    /// Ticks in which it had not stopped.
+    pub active_ticks: u32,
+    /// Those of them in which it waited: it neither tried a step nor turned to look.
+    pub waited_ticks: u32,
     /// Steps that something stood in the way of.
     pub blocked_steps: u32,
     /// Cells on its own map, obstacles included.

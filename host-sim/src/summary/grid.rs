@@ -54,6 +54,10 @@ pub struct RobotSummary {
     pub start: (i16, i16),
     /// Cells walked.
     pub steps: u32,
+    /// Ticks in which it had not stopped.
+    pub active_ticks: u32,
+    /// Those of them in which it waited: it neither tried a step nor turned to look.
+    pub waited_ticks: u32,
     /// Steps that something stood in the way of.
     pub blocked_steps: u32,
     /// Cells on its own map, obstacles included.
@@ -135,6 +139,8 @@ impl RobotSummary {
         Self {
             start,
             steps: robot.steps,
+            active_ticks: robot.active_ticks,
+            waited_ticks: robot.waited_ticks,
             blocked_steps: robot.blocked_steps,
             cells_known: robot.cells_known,
             cells_missed: robot.cells_missed,

@@ -9,7 +9,7 @@ use crate::dice::Dice;
 /// How the robots' first cells are chosen.
 ///
 /// `Center`, `Corner` and `Random` give one cell of the largest component, at
-/// which the whole team starts together.
+/// which the whole team starts together; `Spread` gives one for each robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Starts {
     /// Robot i starts at the i-th of these cells. If there are more robots
@@ -21,6 +21,9 @@ pub enum Starts {
     Corner,
     /// Any cell, by this seed.
     Random(u64),
+    /// The first robot anywhere, by this seed; each further one where the way to the
+    /// nearest of those before is longest.
+    Spread(u64),
 }
 
 impl World {
@@ -49,7 +52,7 @@ impl World {
         solid: bool,
     ) -> Result<Vec<Cell>, WorldError> {
         let anchors = self
-            .anchors(starts)
+            .anchors(starts, robots)
             .map_err(|problem| problem.of(self.name()))?;
         let wished = anchors.iter().copied().cycle().take(robots);
         if !solid {
@@ -70,7 +73,7 @@ impl World {
         Ok(taken)
     }
 
-    fn anchors(&self, starts: &Starts) -> Result<Vec<Cell>, Problem> {
+    fn anchors(&self, starts: &Starts, robots: usize) -> Result<Vec<Cell>, Problem> {
         let extent = self.extent();
         let component = || self.grid.largest_component();
         let nearest = |distance: &dyn Fn(Cell) -> u32| {
@@ -95,6 +98,14 @@ impl World {
             }
             Starts::Corner => nearest(&|cell| cell.distance_squared(Cell::new(0, 0))),
             Starts::Random(seed) => Dice::new(*seed).pick(&component()).into_iter().collect(),
+            Starts::Spread(seed) => {
+                let first = Dice::new(*seed).pick(&component());
+                let mut cells: Vec<Cell> = first.into_iter().collect();
+                while cells.len() < robots {
+                    cells.extend(self.grid.wave(&cells).pop());
+                }
+                cells
+            }
         })
     }
 

@@ -446,6 +446,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
         Some(Starts::Center) => "centre",
         Some(Starts::Corner) => "corner",
         Some(Starts::Random(_)) => "random",
+        Some(Starts::Spread(_)) => "far apart",
         Some(Starts::At(_)) => "placed by hand",
     };
     ComboBox::from_label("start")
@@ -456,6 +457,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
                 (Some(Starts::Center), "centre"),
                 (Some(Starts::Corner), "corner"),
                 (Some(Starts::Random(setup.conditions.seed)), "random"),
+                (Some(Starts::Spread(setup.conditions.seed)), "far apart"),
             ] {
                 ui.selectable_value(&mut setup.starts, starts, name);
             }
@@ -472,7 +474,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
             DragValue::new(&mut setup.conditions.seed),
         );
     });
-    if let Some(Starts::Random(seed)) = &mut setup.starts {
+    if let Some(Starts::Random(seed) | Starts::Spread(seed)) = &mut setup.starts {
         *seed = setup.conditions.seed;
     }
     let faults = &mut setup.conditions.faults;

@@ -138,6 +138,18 @@ pub fn figures(effort: Effort, hospital: Option<Arc<World>>) -> Vec<Figure> {
             },
         },
         Figure {
+            id: "spread",
+            title: "Duration of the exploration from starts far apart".into(),
+            caption: "As figure 8, but the first robot anywhere, and each further one as far as possible \
+                      from those before."
+                .into(),
+            layout: Layout::Robots,
+            plan: Plan {
+                robots: effort.pick(vec![1, 3], vec![1, 2, 3, 5, 8, 10]),
+                ..base(all(), &frontiers, Place::Spread)
+            },
+        },
+        Figure {
             id: "minpos",
             title: "MinPos against simpler rules".into(),
             caption: "[Bautin2011, results on the maze and on the hospital environment], \

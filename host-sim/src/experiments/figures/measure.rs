@@ -1,12 +1,12 @@
 //! From the runs of a figure to its chart.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::list::{Figure, Layout};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Series, Style};
 use crate::experiments::statistics::{geometric_mean, mean};
-use crate::experiments::{ExecuteError, Key, Metric, Row, Shard, execute};
+use crate::experiments::{ExecuteError, Metric, Order, Row, Shard, execute};
 use crate::planners::PlannerKind;
 
 /// Points of a coverage curve.
@@ -28,26 +28,20 @@ pub struct Measured {
 /// # Errors
 /// Those of [`execute`].
 pub fn measure(figure: Figure, done: &(dyn Fn() + Sync)) -> Result<Measured, ExecuteError> {
-    let runs = Mutex::new(HashMap::new());
-    execute(
-        &figure.plan,
-        Shard::ALL,
-        &HashSet::new(),
-        &|row, outcome| {
-            let coverage = match figure.layout {
-                Layout::Coverage => outcome.coverage,
-                _ => Vec::new(),
-            };
-            let mut runs = runs.lock().expect("nobody panics while adding a run");
-            runs.insert(row.key(), (row, coverage));
-            done();
-            Ok(())
-        },
-    )?;
-    let mut runs: HashMap<Key, (Row, Vec<u32>)> =
-        runs.into_inner().expect("all threads have ended");
-    let keys = figure.plan.keys();
-    let (rows, coverage) = keys.filter_map(|key| runs.remove(&key)).unzip();
+    let order = Order::of(&figure.plan);
+    let runs = Mutex::new(BTreeMap::new());
+    execute(&figure.plan, Shard::ALL, &|_, _| false, &|row, outcome| {
+        let coverage = match figure.layout {
+            Layout::Coverage => outcome.coverage,
+            _ => Vec::new(),
+        };
+        let mut runs = runs.lock().expect("nobody panics while adding a run");
+        runs.insert(order.place(&row), (row, coverage));
+        done();
+        Ok(())
+    })?;
+    let runs = runs.into_inner().expect("all threads have ended");
+    let (rows, coverage) = runs.into_values().unzip();
     Ok(Measured {
         figure,
         rows,
@@ -200,6 +194,6 @@ fn color(planner: PlannerKind) -> usize {
         PlannerKind::LocalFrontiersSecondChance => 3,
         PlannerKind::Greedy => 4,
         PlannerKind::Closest => 5,
-        PlannerKind::Bmilrv | PlannerKind::MinPosStrong => 6,
+        PlannerKind::Bmilrv | PlannerKind::MinPosStrong | PlannerKind::Utility => 6,
     }
 }

@@ -10,6 +10,7 @@ use std::fmt;
 
 use clap::ValueEnum;
 use planner_core::Extent;
+use serde::{Deserialize, Serialize};
 
 use super::World;
 use super::error::{Problem, WorldError};
@@ -20,7 +21,10 @@ use crate::dice::Dice;
 const SMALLEST: u16 = 5;
 
 /// A kind of generated world.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, ValueEnum, Serialize, Deserialize,
+)]
+#[serde(rename_all = "kebab-case")]
 pub enum Family {
     /// Corridors of one cell with exactly one way between any two cells.
     PerfectMaze,

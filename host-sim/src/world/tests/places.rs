@@ -73,6 +73,30 @@ fn anchors() {
 }
 
 #[test]
+fn robots_that_are_spread_stand_as_far_apart_as_the_walls_let_them() {
+    let world = world(&[".........", ".#######.", "........#"]);
+    let ends = [cell(7, 2), cell(8, 1)];
+    for seed in 0..20 {
+        let places = world.place(3, &Starts::Spread(seed), true).unwrap();
+        assert_eq!(
+            places,
+            world.place(3, &Starts::Spread(seed), false).unwrap()
+        );
+        let first = world.place(1, &Starts::Random(seed), false).unwrap()[0];
+        assert_eq!(places[0], first);
+        // The second is at an end of the corridor; the third at the other or between them.
+        assert!(ends.contains(&places[1]), "{places:?}");
+        if ends.contains(&first) {
+            assert_eq!(places[2].x, 0, "{places:?}");
+        }
+    }
+    // More robots than cells.
+    let places = world.place(30, &Starts::Spread(1), false).unwrap();
+    assert_eq!(places.iter().collect::<BTreeSet<_>>().len(), 19);
+    world.place(30, &Starts::Spread(1), true).unwrap_err();
+}
+
+#[test]
 fn solid_robots_fill_up_from_the_anchor() {
     let world = world(&["...#.", "...#."]);
     let places = world.place(4, &Starts::At(vec![cell(0, 0)]), true).unwrap();

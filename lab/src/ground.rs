@@ -38,6 +38,9 @@ pub struct Layers {
     pub visited: bool,
     /// How far the selected robot's search over the whole map has got.
     pub search: bool,
+    /// What the votes of the selected robot's looks say: ink for walls, blue for free
+    /// cells, the stronger the more.
+    pub votes: bool,
     /// What was heard, lost or under way in the last tick.
     pub radio: bool,
 }
@@ -55,6 +58,7 @@ impl Default for Layers {
             owners: false,
             visited: false,
             search: true,
+            votes: false,
             radio: false,
         }
     }
@@ -99,6 +103,16 @@ pub fn image(watch: &Watch, subject: Subject, layers: &Layers, colors: &Colors) 
                     *pixel = mix(*pixel, colors.searched, 0.6);
                 }
             }
+        }
+    }
+    if let (Subject::Robot(robot), Some(state), true) = (subject, state, layers.votes) {
+        for (pixel, cell) in pixels.iter_mut().zip(cells(extent)) {
+            let votes = state.votes(robot, cell);
+            let color = match votes > 0 {
+                true => colors.ink,
+                false => colors.changed,
+            };
+            *pixel = mix(*pixel, color, f32::from(votes.abs()) / 4.0);
         }
     }
     ColorImage::new([width, extent.height.into()], pixels)
@@ -291,6 +305,35 @@ pub(crate) fn rgb(pixels: &[Color32]) -> impl Iterator<Item = u8> + '_ {
 mod tests {
     use super::*;
     use crate::setup::Setup;
+
+    #[test]
+    fn votes_are_drawn_where_the_looks_of_the_robot_were() {
+        let setup = Setup::from_address("map=generate:rooms:64x64:3&robots=1&preset=rangers");
+        let mut watch = Watch::new(setup.unwrap().scenario().unwrap()).unwrap();
+        (0..20).for_each(|_| _ = watch.tick());
+        let drawn = |votes| {
+            let layers = Layers {
+                votes,
+                ..Layers::default()
+            };
+            image(&watch, Subject::Robot(0), &layers, &Colors::LIGHT)
+        };
+        let (with, without) = (drawn(true), drawn(false));
+        let at = watch.positions()[0];
+        let mut near = 0;
+        for ((with, without), cell) in with
+            .pixels
+            .iter()
+            .zip(&without.pixels)
+            .zip(cells(watch.scenario().world.extent()))
+        {
+            let has_vote = watch.state().unwrap().votes(0, cell) != 0;
+            assert_eq!(with != without, has_vote, "{cell}");
+            assert!(!has_vote || cell.chebyshev(at) < 32);
+            near += u32::from(has_vote);
+        }
+        assert!(near > 20, "{near}");
+    }
 
     #[test]
     fn a_picture_kept_from_tick_to_tick_is_the_picture() {

@@ -1,5 +1,6 @@
 //! The verbs that every planner has.
 
+use crate::cell::Cell;
 use crate::map::{Learnt, Map};
 use crate::radio::{FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
@@ -185,6 +186,13 @@ pub trait Inspect<const TW: usize, const TH: usize>: Planner<TW, TH> {
     /// assigned none, or this planner does not tell.
     fn assignment(&self) -> Option<u32> {
         None
+    }
+
+    /// By how many more looks a cell near the robot was seen blocked than free, -3 to 3, for
+    /// displays; 0 where a planner does not count.
+    fn votes(&self, cell: Cell) -> i8 {
+        let _ = cell;
+        0
     }
 
     /// The cells of a tile that the search over the whole map has reached, for

@@ -120,6 +120,8 @@ pub trait Stepping {
     fn tile(&self, robot: usize, at: TileIndex) -> Tile;
     /// The frontier cells of one tile of a robot's map.
     fn frontier(&self, robot: usize, at: TileIndex) -> u64;
+    /// By how many more looks a robot saw a cell near it blocked than free, -3 to 3.
+    fn votes(&self, robot: usize, cell: Cell) -> i8;
     /// The cells of one tile that a robot's search over the whole map has reached.
     fn searched(&self, robot: usize, at: TileIndex) -> u64;
     /// The next steps of a robot's plan.
@@ -180,6 +182,10 @@ impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
 
     fn frontier(&self, robot: usize, at: TileIndex) -> u64 {
         self.of(robot).planner.map().frontier(at)
+    }
+
+    fn votes(&self, robot: usize, cell: Cell) -> i8 {
+        self.of(robot).planner.votes(cell)
     }
 
     fn searched(&self, robot: usize, at: TileIndex) -> u64 {

@@ -175,11 +175,17 @@ impl App {
                 (&mut layers.owners, "nearest robot"),
                 (&mut layers.visited, "visited"),
                 (&mut layers.search, "search"),
+                (&mut layers.votes, "votes"),
                 (&mut layers.radio, "radio"),
             ] {
                 ui.checkbox(shows, name);
             }
         });
+        if self.layers.votes {
+            let hint = "Of the selected robot's looks, as it knows the map. As letters: for a wall; \
+                        blue: against one.";
+            ui.label(RichText::new(hint).weak());
+        }
         if self.layers.radio {
             let hint = "Arrow: heard; cross: lost; square: under way. With a crowd, \
                         select a robot.";

@@ -200,6 +200,17 @@ impl Evidence {
         self.strain.is_too_much()
     }
 
+    /// The count of votes of a cell, -3 to 3: above 0 for a wall.
+    pub(super) fn votes(&self, cell: Cell) -> i8 {
+        let Some((at, bit)) = TileIndex::of(cell) else {
+            return 0;
+        };
+        let at = (i16::from(at.x), i16::from(at.y));
+        let is_held = self.window.holds(at);
+        let counts = self.counts.get(Window::slot(at)).filter(|_| is_held);
+        counts.map_or(0, |counts| counts.of(bit))
+    }
+
     /// Ticks on frontier cells since something was learnt, up to 255.
     pub(super) fn barren(&self) -> u8 {
         self.barren
@@ -403,6 +414,12 @@ struct Counts([u64; 3]);
 
 impl Counts {
     const NONE: Self = Self([0; 3]);
+
+    /// That of one cell, given as its bit.
+    const fn of(&self, bit: u64) -> i8 {
+        let [a, b, c] = self.0;
+        (a & bit != 0) as i8 + 2 * (b & bit != 0) as i8 - 4 * (c & bit != 0) as i8
+    }
 
     /// One more for these cells, up to 3.
     fn raise(&mut self, cells: u64) {

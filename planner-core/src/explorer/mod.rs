@@ -661,6 +661,10 @@ impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Explorer<TW, TH> {
         self.work
     }
 
+    fn votes(&self, cell: Cell) -> i8 {
+        self.evidence.votes(cell)
+    }
+
     fn searched(&self, at: TileIndex) -> u64 {
         self.far.searched(at)
     }

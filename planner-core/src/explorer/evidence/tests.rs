@@ -169,6 +169,8 @@ proptest! {
             for cell in sighting.free_cells().chain(sighting.blocked_cells()) {
                 if EXTENT.contains(cell) {
                     prop_assert_eq!(map.level(cell), naive.level(cell), "{} from {},{}", cell, x, y);
+                    let count = naive.counts.get(&(cell.x, cell.y));
+                    prop_assert_eq!(evidence.votes(cell), count.copied().unwrap_or(0));
                 }
             }
         }

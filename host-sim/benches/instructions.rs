@@ -4,7 +4,8 @@
 //! `cargo bench -p host-sim --bench instructions -- --nocapture=stdout`
 //!
 //! Ten explorers on a cave of 64×64 cells: a whole run in the simulator with an exchange
-//! in every tick, the calls of one robot among ten that talk by radio, and a step of CAO.
+//! in every tick, by either medium; the first ticks of 255 of them by radio on 128×128
+//! cells; the calls of one robot among ten that talk by radio; and a step of CAO.
 //! Divide a run's instructions by the robot-ticks that it prints; without the option they
 //! stay hidden.
 //!
@@ -21,6 +22,7 @@ use std::sync::Arc;
 use gungraun::{library_benchmark, library_benchmark_group, main};
 use host_sim::planners::PlannerKind;
 use host_sim::run::{Options, Outcome, run};
+use host_sim::scenario::MediumKind;
 use host_sim::scenario::grid::Scenario;
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, World, generate};
@@ -51,27 +53,31 @@ fn sensor(world: &Arc<World>) -> Arc<Sensor> {
     Arc::new(sensor)
 }
 
-fn exploration() -> (Scenario, Arc<Sensor>) {
-    let world = world();
-    let starts = starts(&world);
-    let sensor = sensor(&world);
-    (Scenario::new(world, starts, PlannerKind::Explorer), sensor)
+fn exploration(medium: MediumKind, robots: usize, side: u16, most: u32) -> Scenario {
+    let world = generate(Family::Cave, side, side, 1).expect("a world of this size");
+    let starts = world.place(robots, &Starts::Random(1), false);
+    let starts = starts.expect("robots may share a cell");
+    let mut scenario = Scenario::new(Arc::new(world), starts, PlannerKind::Explorer);
+    scenario.conditions.medium = medium;
+    scenario.conditions.max_ticks = scenario.conditions.max_ticks.min(most);
+    scenario
 }
 
-/// The sensor comes along, so that its end is not counted.
-fn print_robot_ticks((outcome, _): (Outcome, Arc<Sensor>)) {
-    println!("{} robot-ticks", outcome.ticks as usize * ROBOTS);
+fn print_robot_ticks(outcome: Outcome) {
+    println!(
+        "{} robot-ticks",
+        outcome.ticks as usize * outcome.robots.len()
+    );
 }
 
+// With a sensor that has looked from nowhere.
 #[library_benchmark]
-#[bench::cave(args = (), setup = exploration, teardown = print_robot_ticks)]
-fn whole_run((scenario, sensor): (Scenario, Arc<Sensor>)) -> (Outcome, Arc<Sensor>) {
-    let options = Options {
-        sensor: Some(sensor.clone()),
-        ..Options::default()
-    };
-    let (outcome, _) = run(&scenario, options).expect("the scenario is in range");
-    (outcome, sensor)
+#[bench::ideal(args = (MediumKind::Ideal, ROBOTS, 64, u32::MAX), setup = exploration, teardown = print_robot_ticks)]
+#[bench::radio(args = (MediumKind::Radio, ROBOTS, 64, u32::MAX), setup = exploration, teardown = print_robot_ticks)]
+#[bench::crowd(args = (MediumKind::Radio, 255, 128, 60), setup = exploration, teardown = print_robot_ticks)]
+fn whole_run(scenario: Scenario) -> Outcome {
+    let (outcome, _) = run(&scenario, Options::default()).expect("the scenario is in range");
+    outcome
 }
 
 /// Robots that talk by radio.

@@ -2,7 +2,7 @@
 
 use crate::cell::Cell;
 use crate::map::{Learnt, Map};
-use crate::radio::{FrameError, Heard, Hearsay, MAX_LEN};
+use crate::radio::{Frame, FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::role::Role;
 use crate::sight::Sighting;
@@ -161,6 +161,26 @@ pub trait Contact<const TW: usize, const TH: usize>: Planner<TW, TH> {
 
     /// Takes in what robot `id` told about itself.
     fn hear(&mut self, id: RobotId, status: Status);
+
+    /// Reads a frame for all robots of the same grid and key that hear it. `None`: this
+    /// planner reads each frame itself, in [`receive`](Planner::receive).
+    fn read(&self, bytes: &[u8]) -> Option<Result<Frame, FrameError>> {
+        let _ = bytes;
+        None
+    }
+
+    /// As [`receive`](Planner::receive), of a frame that [`read`](Self::read) has read.
+    ///
+    /// # Errors
+    /// As of `receive`.
+    fn receive_read(
+        &mut self,
+        bytes: &[u8],
+        read: &Result<Frame, FrameError>,
+    ) -> Result<Heard, FrameError> {
+        let _ = read;
+        self.receive(bytes)
+    }
 
     /// What the robot is about to do, for an [`exchange`](crate::role::exchange)
     /// with a robot in its way. `None`: this planner does not exchange roles.

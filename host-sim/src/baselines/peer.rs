@@ -1,7 +1,7 @@
 //! A robot that walks to the frontier that a rule assigns to it.
 
 use planner_core::ExtentError;
-use planner_core::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
+use planner_core::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::{
     Action, Activity, Cell, Contact, Extent, Inspect, Learnt, Map, Motion, Planner, RobotId,
     Sighting, Status, Stop, TileSet,
@@ -241,12 +241,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let heard = self.link.receive(bytes, &mut self.map)?;
-        self.learn(heard.learnt);
-        if let Some(status) = heard.status {
-            self.hear(heard.from, status);
-        }
-        Ok(heard)
+        let read = self.link.read(bytes, self.map.extent());
+        self.receive_read(bytes, &read)
     }
 
     fn map(&self) -> &Map<TW, TH> {
@@ -279,6 +275,23 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Peer<TW, TH> {
         let learnt = self.map.join_tiles(other, tiles);
         self.link.joined(learnt);
         self.learn(learnt)
+    }
+
+    fn read(&self, bytes: &[u8]) -> Option<Result<Frame, FrameError>> {
+        Some(self.link.read(bytes, self.map.extent()))
+    }
+
+    fn receive_read(
+        &mut self,
+        bytes: &[u8],
+        read: &Result<Frame, FrameError>,
+    ) -> Result<Heard, FrameError> {
+        let heard = self.link.receive_read(bytes, read, &mut self.map)?;
+        self.learn(heard.learnt);
+        if let Some(status) = heard.status {
+            self.hear(heard.from, status);
+        }
+        Ok(heard)
     }
 
     fn hear(&mut self, id: RobotId, status: Status) {

@@ -73,22 +73,26 @@ impl<W: Space> Air<W> {
         }
     }
 
-    /// The copies of a frame that a robot receives, and how many ticks late.
-    pub(crate) fn copies(&mut self, frame: &[u8]) -> Vec<(u32, Vec<u8>)> {
-        let copies = 1 + usize::from(self.dice.happens(self.faults.duplication));
-        (0..copies)
-            .map(|_| {
-                let late = match self.faults.delay {
-                    0 => 0,
-                    most => self.dice.below(most.saturating_add(1)),
-                };
-                let mut bytes = frame.to_vec();
-                if self.dice.happens(self.faults.corruption) {
-                    self.corrupt(&mut bytes);
-                }
-                (late, bytes)
-            })
-            .collect()
+    /// How often a frame arrives.
+    pub(crate) fn copies(&mut self) -> u32 {
+        1 + u32::from(self.dice.happens(self.faults.duplication))
+    }
+
+    /// How many ticks late a frame arrives.
+    pub(crate) fn delay(&mut self) -> u32 {
+        match self.faults.delay {
+            0 => 0,
+            most => self.dice.below(most.saturating_add(1)),
+        }
+    }
+
+    /// What becomes of a frame on its way; `None`: nothing.
+    pub(crate) fn corrupted(&mut self, frame: &[u8]) -> Option<Vec<u8>> {
+        self.dice.happens(self.faults.corruption).then(|| {
+            let mut bytes = frame.to_vec();
+            self.corrupt(&mut bytes);
+            bytes
+        })
     }
 
     fn reaches(&self, from: W::Place, to: W::Place) -> bool {

@@ -17,6 +17,7 @@ const COLUMNS: usize = 8;
 
 impl Space for Terrain {
     type Place = Point;
+    type Read = ();
 
     fn is_near(&self, from: Point, to: Point, cells: u16) -> bool {
         from.distance(to) <= f32::from(cells)
@@ -29,6 +30,7 @@ impl Space for Terrain {
 
 impl Space for Scene {
     type Place = Voxel;
+    type Read = ();
 
     fn is_near(&self, from: Voxel, to: Voxel, cells: u16) -> bool {
         from.distance_squared(to) <= u32::from(cells).pow(2)
@@ -43,7 +45,7 @@ impl Space for Scene {
 impl<W: Space> Radio<W> {
     /// What everybody has to say before anybody decides, within so many bytes a robot;
     /// one frame of them is left for after the flight.
-    pub(crate) fn share<S: Station<Place = W::Place>>(
+    pub(crate) fn share<S: Station<Place = W::Place, Read = W::Read>>(
         &mut self,
         tick: u32,
         robots: &mut [S],
@@ -58,7 +60,7 @@ impl<W: Space> Radio<W> {
     }
 
     /// A robot sends what its budget allows, at most so many frames; what is due is heard.
-    pub(crate) fn speak<S: Station<Place = W::Place>>(
+    pub(crate) fn speak<S: Station<Place = W::Place, Read = W::Read>>(
         &mut self,
         tick: u32,
         robots: &mut [S],
@@ -70,7 +72,7 @@ impl<W: Space> Radio<W> {
     }
 
     /// The robots that hear in `tick` what robot `from` says without a frame.
-    pub(crate) fn listeners<S: Station<Place = W::Place>>(
+    pub(crate) fn listeners<S: Station<Place = W::Place, Read = W::Read>>(
         &mut self,
         tick: u32,
         robots: &[S],

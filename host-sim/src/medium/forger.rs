@@ -42,7 +42,9 @@ impl Desk {
                 let mut buffer = [0; MAX_LEN];
                 for key in [None, Some(&self.key)] {
                     let length = S::encode(&frame, key, &mut buffer);
-                    robot.receive(&buffer[..length]);
+                    let frame = &buffer[..length];
+                    let read = robot.read(frame);
+                    robot.receive(frame, &read);
                 }
             }
         }

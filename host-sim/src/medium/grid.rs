@@ -1,7 +1,7 @@
 //! Robots and worlds of cells, as the air sees them.
 
 use planner_core::map::{Level, Tile};
-use planner_core::radio::{Frame, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
+use planner_core::radio::{Frame, FrameError, GridId, Key, LinkConfig, MAX_LEN, TileRecord};
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Extent, RobotId, Status, sight};
 
@@ -10,8 +10,12 @@ use crate::dice::Dice;
 use crate::robot::Robot;
 use crate::world::World;
 
+/// `None`: each robot reads for itself.
+type Read = Option<Result<Frame, FrameError>>;
+
 impl Space for World {
     type Place = Cell;
+    type Read = Read;
 
     fn is_near(&self, from: Cell, to: Cell, cells: u16) -> bool {
         from.distance_squared(to) <= u32::from(cells).pow(2)
@@ -25,6 +29,7 @@ impl Space for World {
 impl<const TW: usize, const TH: usize> Station for Robot<TW, TH> {
     type Place = Cell;
     type Frame = Frame;
+    type Read = Read;
 
     fn id(&self) -> RobotId {
         self.id
@@ -44,8 +49,15 @@ impl<const TW: usize, const TH: usize> Station for Robot<TW, TH> {
         Some(length)
     }
 
-    fn receive(&mut self, frame: &[u8]) {
-        let _ = self.planner.receive(frame);
+    fn read(&self, frame: &[u8]) -> Read {
+        self.planner.read(frame)
+    }
+
+    fn receive(&mut self, frame: &[u8], read: &Read) {
+        let _ = match read {
+            Some(read) => self.planner.receive_read(frame, read),
+            None => self.planner.receive(frame),
+        };
     }
 
     fn goal(&self) -> Option<Cell> {

@@ -12,7 +12,6 @@ use std::sync::Arc;
 
 use planner_core::RobotId;
 
-pub(crate) use air::Air;
 pub(crate) use flown::{any_point, any_voxel, surface_frame, voxel_frame};
 pub use ideal::Ideal;
 pub use radio::Radio;
@@ -68,7 +67,7 @@ pub fn build<const TW: usize, const TH: usize>(
     world: Arc<World>,
 ) -> Box<dyn Medium<TW, TH>> {
     match conditions.medium {
-        MediumKind::Ideal => Box::new(Ideal::new(Air::new(conditions, world), conditions.sync)),
+        MediumKind::Ideal => Box::new(Ideal::new(conditions, world)),
         MediumKind::Radio => Box::new(Radio::new(conditions, world)),
     }
 }

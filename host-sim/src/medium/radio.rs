@@ -1,5 +1,7 @@
 //! The radio: everything that one robot learns from another is in a frame.
 
+use std::cell::OnceCell;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use planner_core::radio::MAX_LEN;
@@ -18,16 +20,23 @@ pub struct Radio<W: Space> {
     /// Ticks between two transmissions of a robot; 0: never.
     sync: u32,
     /// Frames on their way, those sent first first.
-    flights: Vec<Flight>,
+    flights: Vec<Flight<W::Read>>,
     forger: Option<Desk>,
 }
 
 /// One copy of a frame on its way to one robot.
-struct Flight {
+struct Flight<R> {
     due: u32,
     from: usize,
     to: usize,
+    frame: Rc<Carried<R>>,
+}
+
+/// What all who hear a frame share.
+struct Carried<R> {
     bytes: Vec<u8>,
+    /// By the first who hears it.
+    read: OnceCell<R>,
 }
 
 impl<W: Space> Radio<W> {
@@ -47,7 +56,7 @@ impl<W: Space> Radio<W> {
     }
 
     /// A robot sends what its budget allows, at most so many frames.
-    pub(crate) fn transmit<S: Station<Place = W::Place>>(
+    pub(crate) fn transmit<S: Station<Place = W::Place, Read = W::Read>>(
         &mut self,
         tick: u32,
         robots: &mut [S],
@@ -63,15 +72,27 @@ impl<W: Space> Radio<W> {
                 break;
             };
             let from = (robots[speaker].id(), robots[speaker].place());
+            let carried = |bytes| {
+                Rc::new(Carried {
+                    bytes,
+                    read: OnceCell::new(),
+                })
+            };
+            let whole = carried(buffer[..length].to_vec());
             for (to, listener) in robots.iter().enumerate().filter(|(to, _)| *to != speaker) {
                 let listener = (listener.id(), listener.place());
                 if self.air.carries(tick, from, listener) {
-                    for (late, bytes) in self.air.copies(&buffer[..length]) {
+                    for _ in 0..self.air.copies() {
+                        let late = self.air.delay();
+                        let frame = match self.air.corrupted(&whole.bytes) {
+                            None => whole.clone(),
+                            Some(bytes) => carried(bytes),
+                        };
                         self.flights.push(Flight {
                             due: tick.saturating_add(late),
                             from: speaker,
                             to,
-                            bytes,
+                            frame,
                         });
                     }
                 }
@@ -80,13 +101,18 @@ impl<W: Space> Radio<W> {
     }
 
     /// Robots hear what is due in `tick`.
-    pub(crate) fn deliver<S: Station<Place = W::Place>>(&mut self, tick: u32, robots: &mut [S]) {
+    pub(crate) fn deliver<S: Station<Place = W::Place, Read = W::Read>>(
+        &mut self,
+        tick: u32,
+        robots: &mut [S],
+    ) {
         for flight in self.flights.extract_if(.., |flight| flight.due <= tick) {
             if robots[flight.to].is_awake() {
                 let from = robots[flight.from].id();
                 let listener = &mut robots[flight.to];
                 self.air.note(from, listener.id(), Fate::Heard);
-                listener.receive(&flight.bytes);
+                let Carried { bytes, read } = &*flight.frame;
+                listener.receive(bytes, read.get_or_init(|| listener.read(bytes)));
             }
         }
     }

@@ -11,6 +11,8 @@ pub(crate) trait Station {
     type Place: Copy;
     /// A frame of its kind of world.
     type Frame;
+    /// What a frame was read as, for all who hear it.
+    type Read;
 
     /// Its number, which is also its index in the fleet.
     fn id(&self) -> RobotId;
@@ -24,8 +26,11 @@ pub(crate) trait Station {
     /// Its next frame, if its budget allows one; it is counted as sent.
     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
 
+    /// Reads a frame, as all others would too.
+    fn read(&self, frame: &[u8]) -> Self::Read;
+
     /// A frame comes. What is wrong with it is for the planner to find.
-    fn receive(&mut self, frame: &[u8]);
+    fn receive(&mut self, frame: &[u8], read: &Self::Read);
 
     /// Where it says that it goes.
     fn goal(&self) -> Option<Self::Place>;
@@ -65,6 +70,8 @@ pub(crate) struct Claim<P> {
 pub trait Space {
     /// Where robots can be in it.
     type Place: Copy;
+    /// What robots in it read frames as.
+    type Read;
 
     /// Whether two places are at most so many cells apart, as the crow flies.
     fn is_near(&self, from: Self::Place, to: Self::Place, cells: u16) -> bool;

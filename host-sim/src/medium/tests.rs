@@ -172,7 +172,14 @@ fn the_shares_of_the_air_are_kept() {
         .count();
     assert!((900..1100).contains(&carried), "{carried}");
     let frame = [0x5a; 52];
-    let copies: Vec<_> = (0..4000).flat_map(|_| air.copies(&frame)).collect();
+    let mut copies: Vec<(u32, Vec<u8>)> = Vec::new();
+    for _ in 0..4000 {
+        for _ in 0..air.copies() {
+            let late = air.delay();
+            let bytes = air.corrupted(&frame).unwrap_or_else(|| frame.to_vec());
+            copies.push((late, bytes));
+        }
+    }
     assert!((4900..5100).contains(&copies.len()), "{}", copies.len());
     let late = |ticks| copies.iter().filter(|(late, _)| *late == ticks).count();
     assert!((0..=4).all(|ticks| (900..1100).contains(&late(ticks))));

@@ -159,6 +159,7 @@ struct Robot<const T: usize> {
 impl<const T: usize> Station for Robot<T> {
     type Place = Point;
     type Frame = SurfaceFrame;
+    type Read = ();
 
     fn id(&self) -> RobotId {
         self.id
@@ -178,7 +179,9 @@ impl<const T: usize> Station for Robot<T> {
         Some(length)
     }
 
-    fn receive(&mut self, frame: &[u8]) {
+    fn read(&self, _: &[u8]) {}
+
+    fn receive(&mut self, frame: &[u8], (): &()) {
         let _ = self.pilot.get_mut().receive(frame);
     }
 

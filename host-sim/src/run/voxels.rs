@@ -73,6 +73,7 @@ impl Robot {
 impl Station for Robot {
     type Place = Voxel;
     type Frame = VoxelFrame;
+    type Read = ();
 
     fn id(&self) -> RobotId {
         self.id
@@ -92,7 +93,9 @@ impl Station for Robot {
         Some(length)
     }
 
-    fn receive(&mut self, frame: &[u8]) {
+    fn read(&self, _: &[u8]) {}
+
+    fn receive(&mut self, frame: &[u8], (): &()) {
         let _ = self.planner.receive(frame);
     }
 

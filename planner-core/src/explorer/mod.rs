@@ -135,7 +135,7 @@ use heapless::Vec;
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::map::{Learnt, Map};
 use crate::planner::{Contact, Inspect, Planner};
-use crate::radio::{FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
+use crate::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::role::{self, Role};
 use crate::sight::Sighting;
@@ -609,12 +609,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     }
 
     fn receive(&mut self, bytes: &[u8]) -> Result<Heard, FrameError> {
-        let mut heard = self.link.receive(bytes, &mut self.around.map)?;
-        heard.learnt = self.learn_from_others(heard.learnt);
-        if let Some(status) = heard.status {
-            self.hear(heard.from, status);
-        }
-        Ok(heard)
+        let read = self.link.read(bytes, self.around.map.extent());
+        self.receive_read(bytes, &read)
     }
 
     fn is_lost(&self) -> bool {
@@ -635,6 +631,23 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
         let learnt = self.around.map.join_tiles(other, tiles);
         self.link.joined(learnt);
         self.learn_from_others(learnt)
+    }
+
+    fn read(&self, bytes: &[u8]) -> Option<Result<Frame, FrameError>> {
+        Some(self.link.read(bytes, self.around.map.extent()))
+    }
+
+    fn receive_read(
+        &mut self,
+        bytes: &[u8],
+        read: &Result<Frame, FrameError>,
+    ) -> Result<Heard, FrameError> {
+        let mut heard = self.link.receive_read(bytes, read, &mut self.around.map)?;
+        heard.learnt = self.learn_from_others(heard.learnt);
+        if let Some(status) = heard.status {
+            self.hear(heard.from, status);
+        }
+        Ok(heard)
     }
 
     fn hear(&mut self, id: RobotId, status: Status) {

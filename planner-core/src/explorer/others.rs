@@ -89,19 +89,24 @@ impl Others {
     /// Forgets a robot that has stopped, or else the farthest, if it is farther
     /// than the one heard.
     fn make_room(&mut self, heard: &Other, own: Cell) -> bool {
+        // One number, for all of a crowd are ranked for each frame.
         let rank = |other: &Other| {
             let distance = other.position.distance_squared(own);
-            (other.has_stopped, distance)
+            u32::from(other.has_stopped) << 31 | distance.min(u32::MAX >> 1)
         };
-        let least = self.list.iter().max_by_key(|other| rank(other));
-        match least.map(|other| (other.id, rank(other))) {
-            Some((id, worst)) if rank(heard) < worst => {
-                // Not `remove`, which panics for an index outside.
-                self.list.retain(|other| other.id != id);
-                true
+        let (mut worst, mut last) = (rank(heard), None);
+        for other in &self.list {
+            let rank = rank(other);
+            // Of equals the last, but not the one heard.
+            if rank > worst || rank == worst && last.is_some() {
+                (worst, last) = (rank, Some(other.id));
             }
-            _ => false,
         }
+        if let Some(id) = last {
+            // Not `remove`, which panics for an index outside.
+            self.list.retain(|other| other.id != id);
+        }
+        last.is_some()
     }
 
     /// Forgets whom nothing was heard of for more than `memory` ticks.

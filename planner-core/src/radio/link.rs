@@ -180,8 +180,31 @@ impl<const TH: usize> Link<TH> {
         bytes: &[u8],
         map: &mut Map<TW, TH>,
     ) -> Result<Heard, FrameError> {
-        let read = Frame::decode(bytes, self.sender.key(), self.sender.grid, map.extent());
-        let of = |frame: &Frame| (frame.sender, frame.sequence);
+        let read = self.read(bytes, map.extent());
+        self.receive_read(bytes, &read, map)
+    }
+
+    /// Reads a frame, on a map of `extent` cells, for all who hear it: links of the same
+    /// grid and key read the same.
+    ///
+    /// # Errors
+    /// See [`FrameError`].
+    pub fn read(&self, bytes: &[u8], extent: Extent) -> Result<Frame, FrameError> {
+        Frame::decode(bytes, self.sender.key(), self.sender.grid, extent)
+    }
+
+    /// As [`receive`](Self::receive), of a frame that was [read](Self::read).
+    ///
+    /// # Errors
+    /// As of `receive`.
+    pub fn receive_read<const TW: usize>(
+        &mut self,
+        bytes: &[u8],
+        read: &Result<Frame, FrameError>,
+        map: &mut Map<TW, TH>,
+    ) -> Result<Heard, FrameError> {
+        let of = |frame: &&Frame| (frame.sender, frame.sequence);
+        let read = read.as_ref().map_err(|&error| error);
         let frame = self.sender.admit(bytes, read, of)?;
         let mut learnt = Learnt::default();
         let mut last = None;
@@ -232,8 +255,15 @@ impl<const TH: usize> Link<TH> {
             return is_news;
         }
         if self.latest.is_full() {
-            if let Some(oldest) = self.latest.iter_mut().max_by_key(|of| of.age) {
-                *oldest = heard;
+            // The last of the oldest, in one pass: this is done for every frame of a crowd.
+            let (mut age, mut oldest) = (0, 0);
+            for (index, latest) in self.latest.iter().enumerate() {
+                if latest.age >= age {
+                    (age, oldest) = (latest.age, index);
+                }
+            }
+            if let Some(latest) = self.latest.get_mut(oldest) {
+                *latest = heard;
             }
             return true;
         }

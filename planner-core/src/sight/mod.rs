@@ -84,6 +84,31 @@ impl Sighting {
         }
     }
 
+    /// Adds cells of the row that lies `dy` below the robot's own: bit `n` stands for the
+    /// cell `n - 15` to the right of it, as by [`see_free`](Self::see_free) and
+    /// [`see_blocked`](Self::see_blocked). Ignored beyond the radius.
+    pub fn see_row(&mut self, dy: i16, free: u32, blocked: u32) {
+        let Some(row) = row_of(dy) else { return };
+        let own = if dy == 0 { 1 << MAX_RADIUS } else { 0 };
+        let blocked_now = WHOLE_ROW & blocked & !own;
+        if let (Some(free_row), Some(blocked_row), Some(firm)) = (
+            self.free.get_mut(row),
+            self.blocked.get_mut(row),
+            self.firm.get_mut(row),
+        ) {
+            *firm |= *blocked_row & blocked_now;
+            *blocked_row |= blocked_now;
+            *free_row = (*free_row | WHOLE_ROW & free) & !*blocked_row;
+        }
+    }
+
+    /// The cells seen free in the row that lies `dy` below the robot's own, in the bits of
+    /// [`see_row`](Self::see_row).
+    pub fn free_row(&self, dy: i16) -> u32 {
+        let row = row_of(dy).and_then(|row| self.free.get(row));
+        row.copied().unwrap_or(0)
+    }
+
     /// Blocked wins, also where cells were seen free past [`see_free`](Self::see_free).
     fn settle(&mut self) {
         for (free, blocked) in self.free.iter_mut().zip(&self.blocked) {
@@ -226,6 +251,12 @@ const fn byte_at(row: u32, from: i32) -> u8 {
         -7..=-1 => (row << -from) as u8,
         _ => 0,
     }
+}
+
+/// The index of the row `dy` below the robot's own.
+fn row_of(dy: i16) -> Option<usize> {
+    let row = usize::try_from(i32::from(dy) + i32::from(MAX_RADIUS)).ok()?;
+    (row < SPAN).then_some(row)
 }
 
 #[cfg(test)]

@@ -58,6 +58,29 @@ fn exact_line_of_sight(from: Cell, to: Cell, is_blocked: &impl Fn(Cell) -> bool)
 
 proptest! {
     #[test]
+    fn a_row_at_once_is_its_cells_one_by_one(
+        rows in proptest::collection::vec((-17i16..18, any::<u32>(), any::<u32>()), 0..6),
+    ) {
+        let centre = Cell::new(3, -2);
+        let (mut at_once, mut one_by_one) = (Sighting::new(centre), Sighting::new(centre));
+        for (dy, free, blocked) in rows {
+            at_once.see_row(dy, free, blocked);
+            for bit in 0..32 {
+                let cell = Cell::new(centre.x + bit - 15, centre.y + dy);
+                if blocked >> bit & 1 == 1 {
+                    one_by_one.see_blocked(cell);
+                }
+                if free >> bit & 1 == 1 {
+                    one_by_one.see_free(cell);
+                }
+            }
+        }
+        prop_assert_eq!(&at_once, &one_by_one);
+        let cells: u32 = (-20..20).map(|dy| at_once.free_row(dy).count_ones()).sum();
+        prop_assert_eq!(cells as usize, at_once.free_cells().count());
+    }
+
+    #[test]
     fn sight_is_symmetric(walls in walls(), a in cell(), b in cell()) {
         let blocked = blocked_in(&walls);
         prop_assert_eq!(line_of_sight(a, b, &blocked), line_of_sight(b, a, &blocked));

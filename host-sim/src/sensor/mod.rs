@@ -1,11 +1,14 @@
 //! What a robot sees from a cell, remembered for every cell of the world.
 
+mod lines;
+
 use std::sync::{Arc, OnceLock};
 
-use planner_core::tile::{TILE, TileIndex};
+use planner_core::tile::TILE;
 use planner_core::{Cell, Direction, Sighting, sight};
 
 use crate::world::World;
+use lines::{Lines, Obstacles, lines};
 
 /// The field of view of a sensor that looks all around, in degrees.
 pub const ALL_AROUND: u16 = 360;
@@ -20,6 +23,8 @@ pub struct Sensor {
     world: Arc<World>,
     range: u8,
     fov: u16,
+    obstacles: Obstacles,
+    lines: &'static Lines,
     /// One for each cell, or four: one for each heading.
     views: Vec<OnceLock<Box<View>>>,
 }
@@ -44,11 +49,25 @@ impl View {
     pub(crate) fn new(world: &World, sighting: Sighting) -> Self {
         let columns = tile_columns(world);
         let mut free: Vec<(usize, u64)> = Vec::new();
-        for (tile, bit) in sighting.free_cells().filter_map(TileIndex::of) {
-            let number = usize::from(tile.y) * columns + usize::from(tile.x);
-            match free.iter_mut().find(|(known, _)| *known == number) {
-                Some((_, cells)) => *cells |= bit,
-                None => free.push((number, bit)),
+        let Cell { x, y } = sighting.centre();
+        let reach = i16::from(sight::MAX_RADIUS);
+        let (first, shift) = ((x - reach).div_euclid(8), (x - reach).rem_euclid(8));
+        for dy in -reach..=reach {
+            let row = u64::from(sighting.free_row(dy)) << shift;
+            for (cells, tile) in row.to_le_bytes().into_iter().zip(first..) {
+                // Free cells lie in the world.
+                let (Ok(tile), Ok(row)) = (usize::try_from(tile), usize::try_from(y + dy)) else {
+                    continue;
+                };
+                if cells == 0 {
+                    continue;
+                }
+                let number = row / TILE * columns + tile;
+                let bits = u64::from(cells) << (row % TILE * TILE);
+                match free.iter_mut().find(|(known, _)| *known == number) {
+                    Some((_, cells)) => *cells |= bits,
+                    None => free.push((number, bits)),
+                }
             }
         }
         Self {
@@ -72,6 +91,8 @@ impl Sensor {
         let cells = world.extent().cells() as usize;
         let views = if fov >= ALL_AROUND { cells } else { 4 * cells };
         Self {
+            obstacles: Obstacles::of(&world),
+            lines: lines(range),
             world,
             range,
             fov,
@@ -109,19 +130,17 @@ impl Sensor {
             ALL_AROUND.. => index,
             _ => 4 * index + heading as usize,
         };
-        self.views[index].get_or_init(|| Box::new(self.look(cell, heading, |_| false)))
+        self.views[index].get_or_init(|| Box::new(self.look(cell, heading, &[])))
     }
 
     /// As [`view`](Self::view), in a world where these cells are blocked too. Looks anew
     /// each time.
     pub(crate) fn view_past(&self, cell: Cell, heading: Direction, blocked: &[Cell]) -> View {
-        self.look(cell, heading, |cell| blocked.contains(&cell))
+        self.look(cell, heading, blocked)
     }
 
-    fn look(&self, cell: Cell, heading: Direction, is_taken: impl Fn(Cell) -> bool) -> View {
-        let all = sight::look(cell, self.range, |cell| {
-            !self.world.is_free(cell) || is_taken(cell)
-        });
+    fn look(&self, cell: Cell, heading: Direction, blocked: &[Cell]) -> View {
+        let all = self.lines.look(&self.obstacles, cell, blocked);
         let sighting = match self.fov {
             ALL_AROUND.. => all,
             fov => only(&all, |seen| {
@@ -175,6 +194,7 @@ pub(crate) fn tile_columns(world: &World) -> usize {
 mod tests {
     use super::*;
     use planner_core::Extent;
+    use planner_core::tile::TileIndex;
 
     #[test]
     fn a_view_is_what_the_core_sees_and_its_tiles_hold_the_same_cells() {

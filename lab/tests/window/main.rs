@@ -59,6 +59,17 @@ fn laptop_in_the_dark_with_a_robot_selected() {
 }
 
 #[test]
+fn a_misled_robot_with_its_votes() {
+    let address = "map=generate:rooms:48x36:4&robots=2&preset=rangers&false-walls=0.05\
+                   &false-frees=0.02&people=2";
+    let mut harness = harness(address, 1280.0, 800.0, Theme::Light);
+    harness.state_mut().selected = Some(0);
+    harness.state_mut().layers.votes = true;
+    play(&mut harness, 150);
+    compare(&mut harness, "misled");
+}
+
+#[test]
 fn a_crowd_on_a_large_map() {
     let address = "map=generate:rooms:256x256:1&robots=100&start=random";
     let mut harness = harness(address, 1280.0, 800.0, Theme::Light);

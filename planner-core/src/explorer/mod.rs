@@ -377,7 +377,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.role.lost = 0;
             self.looks = 0;
             self.far_is_doubtful = true;
-            self.around.aside.renew();
+            if learnt.cells > 0 {
+                self.around.aside.renew();
+            }
             self.evidence.renew();
             self.doubts = 0;
             if learnt.opened > 0 {

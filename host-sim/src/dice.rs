@@ -49,7 +49,10 @@ impl Dice {
 
     /// True with this probability, 0 to 1. Draws nothing for 0.
     pub(crate) fn happens(&mut self, probability: f64) -> bool {
-        let below = (probability.clamp(0.0, 1.0) * 2f64.powi(32)) as u64;
+        if probability <= 0.0 {
+            return false;
+        }
+        let below = (probability.min(1.0) * 2f64.powi(32)) as u64;
         below > 0 && u64::from(self.0.next_u32()) < below
     }
 

@@ -89,10 +89,13 @@ impl Others {
     /// Forgets a robot that has stopped, or else the farthest, if it is farther
     /// than the one heard.
     fn make_room(&mut self, heard: &Other, own: Cell) -> bool {
-        // One number, for all of a crowd are ranked for each frame.
+        // One number, for all of a crowd are ranked for each frame. Cells of a grid are less
+        // than 2^12 apart: nothing wraps.
         let rank = |other: &Other| {
-            let distance = other.position.distance_squared(own);
-            u32::from(other.has_stopped) << 31 | distance.min(u32::MAX >> 1)
+            let dx = i32::from(other.position.x) - i32::from(own.x);
+            let dy = i32::from(other.position.y) - i32::from(own.y);
+            let distance = dx.wrapping_mul(dx).wrapping_add(dy.wrapping_mul(dy));
+            u32::from(other.has_stopped) << 31 | distance as u32 & u32::MAX >> 1
         };
         let (mut worst, mut last) = (rank(heard), None);
         for other in &self.list {
@@ -142,5 +145,52 @@ impl Others {
 
     fn heard(&self) -> impl Iterator<Item = &Other> {
         self.list.iter().filter(|other| !other.has_stopped)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use std::vec::Vec;
+
+    use super::*;
+
+    /// The same by the words of the rule: id, stopped, position.
+    fn remember(list: &mut Vec<(u8, bool, Cell)>, heard: (u8, bool, Cell), own: Cell) {
+        let rank = |of: &(u8, bool, Cell)| (of.1, of.2.distance_squared(own));
+        if let Some(known) = list.iter_mut().find(|of| of.0 == heard.0) {
+            *known = heard;
+            return;
+        }
+        if list.len() == MAX_OTHERS {
+            let worst = (0..list.len()).max_by_key(|&index| rank(&list[index]));
+            let worst = worst.expect("the list is full");
+            if rank(&heard) >= rank(&list[worst]) {
+                return;
+            }
+            list.remove(worst);
+        }
+        list.push(heard);
+        list.sort_by_key(|of| of.0);
+    }
+
+    proptest! {
+        #[test]
+        fn of_a_crowd_those_near_by_are_remembered(
+            heard in prop::collection::vec((0u8..40, 0i16..9, 0i16..9, any::<bool>()), 0..200),
+        ) {
+            let (mut others, mut list) = (Others::new(), Vec::new());
+            for (number, (id, x, y, stopped)) in heard.into_iter().enumerate() {
+                let own = Cell::new(number as i16 / 50, 4);
+                let position = Cell::new(x, y);
+                let activity = Activity::stopped_if(stopped);
+                let status = Status { position, goal: None, activity };
+                others.hear(RobotId(id), status, own, 0);
+                remember(&mut list, (id, stopped, position), own);
+                let known = others.list.iter();
+                let known = known.map(|of| (of.id.0, of.has_stopped, of.position));
+                prop_assert_eq!(known.collect::<Vec<_>>(), list.clone());
+            }
+        }
     }
 }

@@ -243,25 +243,25 @@ impl<const TH: usize> Link<TH> {
             sequence,
             age: 0,
         };
-        if let Some(latest) = self.latest.iter_mut().find(|of| of.sender == sender) {
-            let most = a_tick
-                .saturating_mul(latest.age + 2)
-                .saturating_add(UNDER_WAY);
-            let ahead = sequence.wrapping_sub(latest.sequence);
-            let is_news = (1..=most.min(i16::MAX as u16)).contains(&ahead);
-            if is_news {
-                *latest = heard;
+        // One pass, for this is done for every frame of a crowd.
+        let (mut age, mut oldest) = (0, 0);
+        for (index, latest) in self.latest.iter_mut().enumerate() {
+            if latest.sender == sender {
+                let most = a_tick
+                    .saturating_mul(latest.age + 2)
+                    .saturating_add(UNDER_WAY);
+                let ahead = sequence.wrapping_sub(latest.sequence);
+                let is_news = (1..=most.min(i16::MAX as u16)).contains(&ahead);
+                if is_news {
+                    *latest = heard;
+                }
+                return is_news;
             }
-            return is_news;
+            if latest.age >= age {
+                (age, oldest) = (latest.age, index);
+            }
         }
         if self.latest.is_full() {
-            // The last of the oldest, in one pass: this is done for every frame of a crowd.
-            let (mut age, mut oldest) = (0, 0);
-            for (index, latest) in self.latest.iter().enumerate() {
-                if latest.age >= age {
-                    (age, oldest) = (latest.age, index);
-                }
-            }
             if let Some(latest) = self.latest.get_mut(oldest) {
                 *latest = heard;
             }

@@ -346,3 +346,24 @@ fn a_replayed_signed_frame_says_nothing_new() {
     let stranger = next_frame(&mut link(1, LinkConfig::new()), &explored());
     assert!(receiver.receive(&stranger, &mut heard_by).is_err());
 }
+
+/// Of a crowd the last of those unheard for longest is forgotten, and believed again.
+#[test]
+fn of_a_crowd_the_oldest_is_forgotten() {
+    let mut link = link(0, LinkConfig::new());
+    let senders = 1..=SENDERS as u8;
+    for sender in senders {
+        assert!(link.is_news(RobotId(sender), 7));
+        assert!(!link.is_news(RobotId(sender), 7));
+        if sender == 3 {
+            link.tick();
+        }
+    }
+    // Robots 1 to 3 are the oldest.
+    assert!(link.is_news(RobotId(100), 7));
+    assert!(!link.is_news(RobotId(2), 7));
+    assert!(link.is_news(RobotId(3), 7));
+    assert!(!link.is_news(RobotId(1), 7));
+    assert!(!link.is_news(RobotId(100), 7));
+    assert!(link.is_news(RobotId(2), 7));
+}

@@ -289,7 +289,8 @@ pub enum PlannerWait {
     /// A robot that sees all around need not turn.
     Look = 5,
     /// The last look saw the next cell of its way blocked, which its map calls free: it
-    /// looks again, a few times, and takes what stays for a refusal.
+    /// looks again, a few times, and takes what stays for a refusal. (With rangers, where
+    /// the place before showed the cell free, it tries the step.)
     Obstructed = 6,
     /// Nothing is left. It will look again at places that were free and are walls now.
     Patrol = 7,

@@ -1,14 +1,19 @@
-//! Exploration planners for swarms of microcontroller-class robots.
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
+// What surveys alone need of the common parts is small, and told apart nowhere else.
+#![cfg_attr(not(feature = "survey"), allow(dead_code, unused_imports))]
 
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "survey")]
 pub mod cao;
 mod cell;
+#[cfg(feature = "survey")]
 pub mod coordinated_survey;
 pub mod explorer;
+#[cfg(feature = "survey")]
 pub mod fcao;
 mod list;
 pub mod local_frontiers;
@@ -21,10 +26,14 @@ pub mod rng;
 mod robot;
 pub mod role;
 pub mod sight;
+#[cfg(feature = "survey")]
 pub mod surface;
+#[cfg(feature = "survey")]
 pub mod survey;
 pub mod tile;
+#[cfg(feature = "survey")]
 pub mod volume;
+#[cfg(feature = "survey")]
 pub mod voxel_survey;
 mod zeroed;
 

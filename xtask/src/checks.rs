@@ -45,17 +45,12 @@ const CHECKS: &[Check] = &[
     },
     Check {
         name: "clippy-features",
-        title: "nor with every feature of planner-core",
+        title: "nor with every feature of planner-core, and with none",
         run: || {
-            cargo([
-                "clippy",
-                "-p=planner-core",
-                "--all-features",
-                "--",
-                "-Dwarnings",
-            ])
-            .run()
-            .map(nothing)
+            for features in ["--all-features", "--no-default-features"] {
+                cargo(["clippy", "-p=planner-core", features, "--", "-Dwarnings"]).run()?;
+            }
+            Ok(String::new())
         },
     },
     Check {
@@ -171,6 +166,11 @@ const CHECKS: &[Check] = &[
         name: "targets",
         title: "planner-core builds for every chip, with and without its features",
         run: core_builds_for_chips,
+    },
+    Check {
+        name: "package",
+        title: "planner-core stands alone as a crate that can be published",
+        run: core_is_packaged,
     },
     Check {
         name: "firmware",
@@ -342,9 +342,24 @@ fn core_builds_for_chips() -> Result<String> {
             .args(["--config=profile.dev.package.planner-core.opt-level=0"])
             .args(CHIPS.map(|chip| format!("--target={chip}")))
     };
-    build().run()?;
+    build().arg("--no-default-features").run()?;
     build().arg("--all-features").run()?;
     Ok(CHIPS.join(", "))
+}
+
+/// The crate as its users get it is built, without what it has for surveys; and it
+/// carries what a user needs to read.
+fn core_is_packaged() -> Result<String> {
+    const CARRIES: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
+    let package = || cargo(["package", "-p=planner-core", "--allow-dirty"]);
+    let list = package().arg("--list").output()?;
+    for file in CARRIES {
+        if !list.stdout.lines().any(|line| line == file) {
+            bail!("the crate does not carry {file}");
+        }
+    }
+    package().arg("--no-default-features").run()?;
+    Ok(format!("{} files", list.stdout.lines().count()))
 }
 
 /// The same cases of each property every time, so that a check says the same of the

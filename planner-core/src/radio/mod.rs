@@ -10,12 +10,14 @@ mod check;
 mod envelope;
 mod error;
 mod hearsay;
+#[cfg(feature = "survey")]
 mod heights;
 mod key;
 mod link;
 mod outbox;
 mod roster;
 mod sender;
+#[cfg(feature = "survey")]
 mod voxels;
 
 pub use cells::{Frame, MAX_TILES, TileRecord};
@@ -23,6 +25,7 @@ pub use check::GridId;
 pub use envelope::MAX_LEN;
 pub use error::{Field, FrameError};
 pub use hearsay::Hearsay;
+#[cfg(feature = "survey")]
 pub use heights::{HeightRecord, SurfaceFrame};
 pub use key::Key;
 pub use link::{Heard, Link};
@@ -30,7 +33,9 @@ pub(crate) use roster::Roster;
 pub use roster::{MAX_PEERS, PEER_MEMORY, Peer};
 pub use sender::LinkConfig;
 pub(crate) use sender::Sender;
+#[cfg(feature = "survey")]
 pub(crate) use voxels::MAX_PATCHES;
+#[cfg(feature = "survey")]
 pub use voxels::VoxelFrame;
 
 #[cfg(test)]

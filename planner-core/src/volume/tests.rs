@@ -109,5 +109,16 @@ fn sight_does_not_slip_between_walls() {
         Voxel::new(4, 2, 2),
         one(Voxel::new(2, 1, 1))
     ));
+    // Through a corner, three borders at once: one way round it must be clear, and it is
+    // the same way back.
+    let (a, b) = (Voxel::new(0, 0, 0), Voxel::new(1, 1, 1));
+    let walls = [[0, 1, 1], [1, 0, 1], [1, 1, 0]].map(|[x, y, z]| Voxel::new(x, y, z));
+    for (from, to) in [(a, b), (b, a)] {
+        assert!(in_sight(from, to, |at| !walls[..2].contains(&at)));
+        assert!(!in_sight(from, to, |at| !walls.contains(&at)));
+        // Clear are (1, 0, 0) and (0, 1, 1) alone: not side by side.
+        let clear = [Voxel::new(1, 0, 0), walls[0]];
+        assert!(!in_sight(from, to, |at| clear.contains(&at)));
+    }
     assert!(in_sight(from, from, |_| false));
 }

@@ -1,4 +1,4 @@
-// Start-up of an STM32F405 and semihosting, without a C library.
+// Start-up of an STM32F405 and semihosting.
 
 #include "board.h"
 

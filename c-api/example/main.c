@@ -4,6 +4,9 @@
 #include "board.h"
 #include "planner.h"
 
+#include <math.h>
+#include <string.h>
+
 // All memory that the planner ever takes. Sizes are known when this is compiled.
 static Planner robot;
 _Static_assert(sizeof(Planner) <= 29044, "the Crazyflie's default build leaves 29,044 bytes");
@@ -24,6 +27,12 @@ static const char *const WORLD[] = {
     "########################",
 };
 enum { WIDTH = 24, HEIGHT = 12, CELL_MM = 100 };
+
+// What a radio's driver takes.
+typedef struct {
+    uint8_t length;
+    uint8_t bytes[PLANNER_MAX_FRAME];
+} Packet;
 
 static bool is_blocked(int x, int y) {
     return x < 0 || y < 0 || x >= WIDTH || y >= HEIGHT || WORLD[y][x] == '#';
@@ -89,12 +98,13 @@ static float range_of(Ranging ranging) {
     }
 }
 
-// From the middle of a cell; a robot on wheels gives the pose of its odometry.
-static void look(PlannerCell at) {
+// From near the middle of a cell: a robot on wheels gives the pose of its odometry.
+static void look(PlannerCell at, int tick) {
     for (int i = 0; i < SENSORS; i++) {
         beams[i].range = range_of(measure(at, i));
     }
-    PlannerPose pose = {(float)at.x + 0.5f, (float)at.y + 0.5f, 0};
+    float aside = 0.05f * sinf((float)tick);
+    PlannerPose pose = {(float)at.x + 0.5f + aside, (float)at.y + 0.5f, 0};
     PlannerResult result =
         planner_observe_scan(&robot, &pose, MAX_RANGE, PLANNER_TOLERANCE, beams, SENSORS);
     check(result == PLANNER_RESULT_OK, "observe");
@@ -104,15 +114,15 @@ static void mistakes_are_answered(const PlannerConfig *config) {
     PlannerAction action;
     Planner *crooked = (Planner *)((char *)&robot + 1);
     check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "not created");
-    check(planner_create(NULL, config) == PLANNER_RESULT_NULL, "no planner");
-    check(planner_create(&robot, NULL) == PLANNER_RESULT_NULL, "no configuration");
-    check(planner_create(crooked, config) == PLANNER_RESULT_MISALIGNED, "misaligned");
+    check(planner_create(NULL, sizeof(Planner), config) == PLANNER_RESULT_NULL, "no planner");
+    check(planner_create(&robot, sizeof(Planner), NULL) == PLANNER_RESULT_NULL, "no configuration");
+    check(planner_create(crooked, sizeof(Planner), config) == PLANNER_RESULT_MISALIGNED, "misaligned");
     PlannerConfig wrong = *config;
     wrong.cell_mm = 0;
-    check(planner_create(&robot, &wrong) == PLANNER_RESULT_CELL_SIZE, "cells of 0 mm");
+    check(planner_create(&robot, sizeof(Planner), &wrong) == PLANNER_RESULT_CELL_SIZE, "cells of 0 mm");
     wrong = *config;
     wrong.start.x = WIDTH;
-    check(planner_create(&robot, &wrong) == PLANNER_RESULT_EXTENT, "starts off the grid");
+    check(planner_create(&robot, sizeof(Planner), &wrong) == PLANNER_RESULT_EXTENT, "starts off the grid");
     check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "still not created");
 }
 
@@ -142,12 +152,12 @@ int main(void) {
     };
     mount_sensors();
     mistakes_are_answered(&config);
-    check(planner_create(&robot, &config) == PLANNER_RESULT_OK, "create");
+    check(planner_create(&robot, sizeof(Planner), &config) == PLANNER_RESULT_OK, "create");
     bool is_mute;
     check(planner_is_mute(&robot, &is_mute) == PLANNER_RESULT_OK && !is_mute, "talks");
 
     for (int tick = 0; tick < 2000; tick++) {
-        look(at);
+        look(at, tick);
         PlannerAction action;
         check(planner_tick(&robot, &action) == PLANNER_RESULT_OK, "tick");
         if (action.kind == PLANNER_ACTION_KIND_STOP) {
@@ -170,9 +180,13 @@ int main(void) {
         uint8_t frame[PLANNER_MAX_FRAME];
         size_t length;
         check(planner_transmit(&robot, frame, &length) == PLANNER_RESULT_OK, "transmit");
-        // Its own frame says nothing to a robot; a real one would broadcast it.
+        // Its own frame says nothing to a robot; a real one would broadcast the packet.
+        static Packet packet;
+        packet.length = (uint8_t)length;
+        memcpy(packet.bytes, frame, length);
         if (length > 0) {
-            check(planner_receive(&robot, frame, length) == PLANNER_RESULT_FRAME_OWN, "receive");
+            check(planner_receive(&robot, packet.bytes, packet.length) == PLANNER_RESULT_FRAME_OWN,
+                  "receive");
         }
     }
     board_print("not complete\n");

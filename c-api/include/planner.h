@@ -13,6 +13,19 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// Largest width and height of a grid, in cells, and size of a planner in words of 8 bytes.
+// Define PLANNER_CELLS_32 or PLANNER_CELLS_64 for the object of that size.
+#if defined(PLANNER_CELLS_32)
+#define PLANNER_MAX_CELLS 32
+#define PLANNER_WORDS 482
+#elif defined(PLANNER_CELLS_64)
+#define PLANNER_MAX_CELLS 64
+#define PLANNER_WORDS 1153
+#else
+#define PLANNER_MAX_CELLS 128
+#define PLANNER_WORDS 3630
+#endif
+
 // The robot is on the cell that it was sent to.
 #define PLANNER_MOVED 0
 
@@ -21,9 +34,6 @@
 
 // Another robot stands there and goes first; the robot is where it was.
 #define PLANNER_HELD 2
-
-// Largest width and height of a grid, in cells.
-#define PLANNER_MAX_CELLS 128
 
 // The longest frame, in bytes.
 #define PLANNER_MAX_FRAME 55
@@ -34,10 +44,6 @@
 
 // Places that `planner_shut` names at most.
 #define PLANNER_MAX_SHUT 8
-
-// Size of a planner in words of 8 bytes: the 29,032 bytes that an explorer may take by
-// `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
-#define PLANNER_WORDS 3630
 
 // What came of a call.
 typedef enum {
@@ -82,6 +88,9 @@ typedef enum {
   PLANNER_RESULT_FRAME_SAME_ID = 18,
   // The sensor is none of the constants, or its margin is above 3.
   PLANNER_RESULT_SENSOR = 19,
+  // The memory is smaller than a planner of this library: the header was included for
+  // another size than the library was built for.
+  PLANNER_RESULT_MEMORY = 20,
 } PlannerResult;
 
 // What the robot shall do.
@@ -284,14 +293,19 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
+// Creates a planner in place, or starts it anew. `bytes` is `sizeof(Planner)`: a header
+// and a library of different sizes are told by `PLANNER_RESULT_MEMORY`. After any result
 // but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 // planner that runs goes on.
-PlannerResult planner_create(Planner *planner, const PlannerConfig *config);
+//
+// Stack: 0 bytes.
+PlannerResult planner_create(Planner *planner, size_t bytes, const PlannerConfig *config);
 
 // The direction `radians` from the robot's heading; grows from east to south. Make it
 // once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
 // finite gives a direction whose beams say nothing.
+//
+// Stack: 0 bytes.
 PlannerBearing planner_bearing(float radians);
 
 // Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
@@ -310,6 +324,8 @@ PlannerBearing planner_bearing(float radians);
 // (glass, matt black, a sensor that does not point there) is set aside after a few
 // looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
 // cell that the robot stands on is free, whatever was seen of it from elsewhere.
+//
+// Stack: 0 bytes.
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
@@ -320,47 +336,67 @@ PlannerResult planner_observe_scan(Planner *planner,
 // Takes in cells that were seen from the cell `centre`, where the robot stands and
 // which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 // says what looks must show.
+//
+// Stack: 0 bytes.
 PlannerResult planner_observe_cells(Planner *planner,
                                     PlannerCell centre,
                                     const PlannerSeen *cells,
                                     size_t count);
 
 // Decides what the robot does now. Call it once a tick.
+//
+// Stack: 0 bytes.
 PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 
 // Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
 // or wants it to try again what it gave up. Without a stop, what refused a step or
 // showed nothing is tried anew.
+//
+// Stack: 0 bytes.
 PlannerResult planner_resume(Planner *planner);
 
 // Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 // it could reach within its map; otherwise it gave up.
+//
+// Stack: 0 bytes.
 bool planner_stop_is_complete(uint8_t stop);
 
 // Says how the step of the last move went: [`PLANNER_MOVED`],
 // [`PLANNER_BLOCKED`] or [`PLANNER_HELD`].
+//
+// Stack: 0 bytes.
 PlannerResult planner_report(Planner *planner, uint8_t motion);
 
 // Writes the next frame for the other robots into `frame`, which holds
 // [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
 // nothing to send in this tick any more. A mute planner never has anything to send:
 // see `planner_is_mute`.
+//
+// Stack: 0 bytes.
 PlannerResult planner_transmit(Planner *planner, uint8_t *frame, size_t *length);
 
 // Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
+//
+// Stack: 0 bytes.
 PlannerResult planner_is_mute(Planner *planner, bool *is_mute);
 
 // Takes in a frame of another robot, at any time. A result from
 // `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
+//
+// Stack: 0 bytes.
 PlannerResult planner_receive(Planner *planner, const uint8_t *frame, size_t length);
 
 // Writes how many cells of the map are known, and how many of them are frontiers.
+//
+// Stack: 0 bytes.
 PlannerResult planner_known(Planner *planner, uint32_t *known, uint32_t *frontiers);
 
 // Writes how many cells were free and are walls now (doors that somebody shut), and the
 // last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
 // one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
 // seen: what lies behind these is not part of it.
+//
+// Stack: 0 bytes.
 PlannerResult planner_shut(Planner *planner,
                            uint32_t *cells,
                            PlannerCell *places,

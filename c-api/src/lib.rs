@@ -16,7 +16,7 @@ use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
 use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
-pub use place::{PLANNER_WORDS, Planner};
+pub use place::{PLANNER_MAX_CELLS, PLANNER_WORDS, Planner};
 pub use types::{
     PlannerAction, PlannerActionKind, PlannerBeam, PlannerBearing, PlannerCell, PlannerConfig,
     PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerSensor, PlannerStop,
@@ -32,10 +32,6 @@ pub const PLANNER_BLOCKED: u8 = 1;
 /// Another robot stands there and goes first; the robot is where it was.
 pub const PLANNER_HELD: u8 = 2;
 
-/// Largest width and height of a grid, in cells.
-pub const PLANNER_MAX_CELLS: u16 = 128;
-const _: () = assert!(PLANNER_MAX_CELLS as usize == 8 * place::TILES);
-
 /// The longest frame, in bytes.
 pub const PLANNER_MAX_FRAME: usize = 55;
 const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
@@ -49,16 +45,23 @@ const _: () = assert!(PLANNER_TOLERANCE == RangeSensor::TOLERANCE);
 pub const PLANNER_MAX_SHUT: usize = 8;
 const _: () = assert!(PLANNER_MAX_SHUT == MOST_PLACES);
 
-/// Creates a planner in place, or starts it anew. Takes 1 KiB of stack. After any result
+/// Creates a planner in place, or starts it anew. `bytes` is `sizeof(Planner)`: a header
+/// and a library of different sizes are told by `PLANNER_RESULT_MEMORY`. After any result
 /// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 /// planner that runs goes on.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_create(
     planner: *mut Planner,
+    bytes: usize,
     config: *const PlannerConfig,
 ) -> PlannerResult {
     answer(|| {
         let config = *input(config)?;
+        if !Robot::fits(bytes) {
+            return Err(PlannerResult::Memory);
+        }
         let extent = Extent::new(config.width, config.height);
         let start = Cell::new(config.start.x, config.start.y);
         // All of it before the memory is touched.
@@ -90,6 +93,8 @@ pub extern "C" fn planner_create(
 /// The direction `radians` from the robot's heading; grows from east to south. Make it
 /// once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
 /// finite gives a direction whose beams say nothing.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
     Bearing::from_radians(radians).into()
@@ -111,6 +116,8 @@ pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
 /// (glass, matt black, a sensor that does not point there) is set aside after a few
 /// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
 /// cell that the robot stands on is free, whatever was seen of it from elsewhere.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_scan(
     planner: *mut Planner,
@@ -145,6 +152,8 @@ pub extern "C" fn planner_observe_scan(
 /// Takes in cells that were seen from the cell `centre`, where the robot stands and
 /// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 /// says what looks must show.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_cells(
     planner: *mut Planner,
@@ -167,6 +176,8 @@ pub extern "C" fn planner_observe_cells(
 }
 
 /// Decides what the robot does now. Call it once a tick.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction) -> PlannerResult {
     answer(|| {
@@ -181,6 +192,8 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
 /// Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
 /// or wants it to try again what it gave up. Without a stop, what refused a step or
 /// showed nothing is tried anew.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
     answer(|| {
@@ -191,6 +204,8 @@ pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
 
 /// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 /// it could reach within its map; otherwise it gave up.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
     let code = stop.checked_sub(1);
@@ -200,6 +215,8 @@ pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
 
 /// Says how the step of the last move went: [`PLANNER_MOVED`],
 /// [`PLANNER_BLOCKED`] or [`PLANNER_HELD`].
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerResult {
     answer(|| {
@@ -218,6 +235,8 @@ pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerRe
 /// [`PLANNER_MAX_FRAME`] bytes, and its length into `length`: 0 if there is
 /// nothing to send in this tick any more. A mute planner never has anything to send:
 /// see `planner_is_mute`.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_transmit(
     planner: *mut Planner,
@@ -237,6 +256,8 @@ pub extern "C" fn planner_transmit(
 }
 
 /// Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> PlannerResult {
     answer(|| {
@@ -248,6 +269,8 @@ pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> 
 
 /// Takes in a frame of another robot, at any time. A result from
 /// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_receive(
     planner: *mut Planner,
@@ -263,6 +286,8 @@ pub extern "C" fn planner_receive(
 }
 
 /// Writes how many cells of the map are known, and how many of them are frontiers.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_known(
     planner: *mut Planner,
@@ -282,6 +307,8 @@ pub extern "C" fn planner_known(
 /// last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
 /// one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
 /// seen: what lies behind these is not part of it.
+///
+/// Stack: 0 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_shut(
     planner: *mut Planner,

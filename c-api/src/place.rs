@@ -4,12 +4,38 @@ use planner_core::explorer::Explorer;
 
 use crate::types::PlannerResult;
 
-/// Columns and rows of tiles of the map.
-pub(crate) const TILES: usize = 16;
+#[cfg(all(feature = "cells-32", feature = "cells-64"))]
+compile_error!("choose one of the features cells-32 and cells-64");
 
-/// Size of a planner in words of 8 bytes: the 29,032 bytes that an explorer may take by
-/// `fixtures/budget.txt`, and one word that tells that it is there and whether it talks.
-pub const PLANNER_WORDS: usize = 3630;
+/// Largest width and height of a grid, in cells. (The header has it, and the next, for
+/// each size; `cbindgen.toml`.)
+///
+/// cbindgen:ignore
+pub const PLANNER_MAX_CELLS: u16 = if cfg!(feature = "cells-32") {
+    32
+} else if cfg!(feature = "cells-64") {
+    64
+} else {
+    128
+};
+
+/// Size of a planner in words of 8 bytes.
+///
+/// cbindgen:ignore
+pub const PLANNER_WORDS: usize = words(PLANNER_MAX_CELLS);
+
+/// Words for a map of so many cells: what an explorer may take by `fixtures/budget.txt`,
+/// and one that tells that it is there and whether it talks.
+pub(crate) const fn words(cells: u16) -> usize {
+    match cells {
+        32 => 482,
+        64 => 1153,
+        _ => 3630,
+    }
+}
+
+/// Columns and rows of tiles of the map.
+pub(crate) const TILES: usize = PLANNER_MAX_CELLS as usize / 8;
 
 /// Memory for one planner. `planner_create` makes one in it. Do not copy it.
 #[repr(C)]
@@ -37,6 +63,11 @@ const _: () = assert!(align_of::<Robot>() <= align_of::<Planner>());
 const CREATED: u32 = 0x9e37_79b1;
 
 impl Robot {
+    /// Whether a planner fits into so many bytes.
+    pub(crate) const fn fits(bytes: usize) -> bool {
+        bytes >= size_of::<Planner>()
+    }
+
     /// A planner without a map, in place.
     pub(crate) fn create<'a>(memory: *mut Planner) -> Result<&'a mut Self, PlannerResult> {
         check(memory)?;

@@ -23,6 +23,8 @@ const CONFIG: PlannerConfig = PlannerConfig {
     patrol_ticks: 0,
 };
 
+const SIZE: usize = size_of::<Planner>();
+
 /// An action to be overwritten.
 const NOTHING: PlannerAction = PlannerAction {
     kind: PlannerActionKind::Wait,
@@ -44,8 +46,28 @@ fn planner(memory: &mut [u64]) -> *mut Planner {
 
 fn created(memory: &mut [u64], config: PlannerConfig) -> *mut Planner {
     let planner = planner(memory);
-    assert_eq!(planner_create(planner, &config), PlannerResult::Ok);
+    assert_eq!(planner_create(planner, SIZE, &config), PlannerResult::Ok);
     planner
+}
+
+#[test]
+fn the_header_knows_the_sizes() {
+    let header = include_str!("../include/planner.h");
+    for cells in [32, 64, 128] {
+        let words = place::words(cells);
+        let lines = format!("PLANNER_MAX_CELLS {cells}\n#define PLANNER_WORDS {words}\n");
+        assert!(header.contains(&lines), "{lines}");
+    }
+}
+
+#[test]
+fn a_header_of_another_size_is_answered() {
+    let mut memory = memory();
+    let place = planner(&mut memory);
+    let smaller = planner_create(place, SIZE - 8, &CONFIG);
+    assert_eq!(smaller, PlannerResult::Memory);
+    assert_eq!(planner_resume(place), PlannerResult::NotCreated);
+    assert_eq!(planner_create(place, SIZE + 8, &CONFIG), PlannerResult::Ok);
 }
 
 #[test]
@@ -60,8 +82,8 @@ fn null_is_answered() {
     };
     let centre = CONFIG.start;
     for result in [
-        planner_create(null_mut(), &CONFIG),
-        planner_create(ready, null()),
+        planner_create(null_mut(), SIZE, &CONFIG),
+        planner_create(ready, SIZE, null()),
         planner_observe_scan(ready, null(), 4.0, 0.1, null(), 0),
         planner_observe_scan(ready, &pose, 4.0, 0.1, null(), 1),
         planner_observe_cells(null_mut(), centre, null(), 0),
@@ -84,7 +106,10 @@ fn null_is_answered() {
 fn misaligned_is_answered() {
     let mut memory = memory();
     let crooked = planner(&mut memory).wrapping_byte_add(1);
-    assert_eq!(planner_create(crooked, &CONFIG), PlannerResult::Misaligned);
+    assert_eq!(
+        planner_create(crooked, SIZE, &CONFIG),
+        PlannerResult::Misaligned
+    );
     assert_eq!(
         planner_report(crooked, PLANNER_MOVED),
         PlannerResult::Misaligned
@@ -101,7 +126,7 @@ fn misaligned_is_answered() {
     };
     let centre = CONFIG.start;
     for result in [
-        planner_create(ready, crooked.cast()),
+        planner_create(ready, SIZE, crooked.cast()),
         planner_observe_scan(ready, crooked.cast(), 4.0, 0.1, null(), 0),
         planner_observe_scan(ready, &pose, 4.0, 0.1, crooked.cast(), 1),
         planner_observe_cells(ready, centre, crooked.cast(), 1),
@@ -133,13 +158,13 @@ fn memory_without_a_planner_and_values_out_of_range_are_answered() {
         width: 129,
         ..CONFIG
     };
-    assert_eq!(planner_create(ready, &wide), PlannerResult::Extent);
+    assert_eq!(planner_create(ready, SIZE, &wide), PlannerResult::Extent);
     let outside = PlannerConfig {
         start: PlannerCell { x: 9, y: 0 },
         ..CONFIG
     };
-    assert_eq!(planner_create(ready, &outside), PlannerResult::Extent);
-    assert_eq!(planner_create(ready, &CONFIG), PlannerResult::Ok);
+    assert_eq!(planner_create(ready, SIZE, &outside), PlannerResult::Extent);
+    assert_eq!(planner_create(ready, SIZE, &CONFIG), PlannerResult::Ok);
     assert_eq!(planner_report(ready, 3), PlannerResult::Motion);
     let pose = PlannerPose {
         x: f32::NAN,
@@ -206,7 +231,7 @@ proptest! {
         tick(planner(&mut running));
         for memory in [&mut fresh, &mut running] {
             let before = memory.clone();
-            match planner_create(planner(memory), &config) {
+            match planner_create(planner(memory), SIZE, &config) {
                 PlannerResult::Ok => {
                     prop_assert!((1..=128).contains(&width) && (1..=128).contains(&height));
                     prop_assert!((0..width as i16).contains(&x) && (0..height as i16).contains(&y));
@@ -233,10 +258,13 @@ fn a_failed_create_with_a_bad_pointer_changes_nothing() {
     assert_eq!(look(ready, CONFIG.start), PlannerResult::Ok);
     let before = memory.clone();
     let ready = planner(&mut memory);
-    assert_eq!(planner_create(ready, null()), PlannerResult::Null);
+    assert_eq!(planner_create(ready, SIZE, null()), PlannerResult::Null);
     let configs = [CONFIG; 2];
     let crooked = configs.as_ptr().wrapping_byte_add(1);
-    assert_eq!(planner_create(ready, crooked), PlannerResult::Misaligned);
+    assert_eq!(
+        planner_create(ready, SIZE, crooked),
+        PlannerResult::Misaligned
+    );
     assert!(memory == before);
 }
 
@@ -574,7 +602,11 @@ fn a_sensor_is_one_of_the_constants_and_its_margin_three_at_most() {
             margin,
             ..CONFIG
         };
-        assert_eq!(planner_create(place, &config), result, "{sensor}, {margin}");
+        assert_eq!(
+            planner_create(place, SIZE, &config),
+            result,
+            "{sensor}, {margin}"
+        );
     }
 }
 

@@ -51,6 +51,9 @@ pub enum PlannerResult {
     FrameSameId = 18,
     /// The sensor is none of the constants, or its margin is above 3.
     Sensor = 19,
+    /// The memory is smaller than a planner of this library: the header was included for
+    /// another size than the library was built for.
+    Memory = 20,
 }
 
 impl From<FrameError> for PlannerResult {
@@ -93,9 +96,11 @@ pub struct PlannerConfig {
     pub start: PlannerCell,
     /// Side of a cell in millimetres, above 0.
     pub cell_mm: u16,
-    /// Where cell 0,0 lies in the common frame, in millimetres.
+    /// Where the grid's north-western corner, which is that of cell 0,0, lies in the
+    /// common frame, in millimetres.
     pub origin_x_mm: i32,
-    /// The same along y.
+    /// The same along y. For a square grid around the place where poses in metres begin:
+    /// minus half of its side for x, plus half of it for y.
     pub origin_y_mm: i32,
     /// Bytes that the robot may send a tick on average; 0: it only listens, which
     /// `planner_is_mute` tells. Less than `PLANNER_MAX_FRAME`: a frame every few ticks.

@@ -62,7 +62,7 @@ static void refused(Planner *planner, PlannerConfig config, PlannerResult wanted
     memcpy(before, planner, sizeof *before);
     PlannerConfig *given = malloc(sizeof *given);
     *given = config;
-    CHECK(planner_create(planner, given), wanted);
+    CHECK(planner_create(planner, sizeof(Planner), given), wanted);
     CHECK(memcmp(before, planner, sizeof *before), 0);
     free(given);
     free(before);
@@ -100,10 +100,10 @@ static void a_failed_create_changes_nothing(Planner *planner) {
         nothing_is_created(planner);
     }
     PlannerConfig config = usual();
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     look(planner, config.start);
     all_refused(planner);
-    CHECK(planner_create(planner, NULL), PLANNER_RESULT_NULL);
+    CHECK(planner_create(planner, sizeof(Planner), NULL), PLANNER_RESULT_NULL);
     PlannerAction action;
     CHECK(planner_tick(planner, &action), PLANNER_RESULT_OK);
     CHECK(action.kind, PLANNER_ACTION_KIND_MOVE);
@@ -114,11 +114,11 @@ static void odd_pointers_and_counts(Planner *planner) {
     PlannerConfig config = usual();
     for (int offset = 1; offset < 8; offset++) {
         Planner *crooked = (Planner *)(void *)(block + offset);
-        CHECK(planner_create(crooked, &config), PLANNER_RESULT_MISALIGNED);
+        CHECK(planner_create(crooked, sizeof(Planner), &config), PLANNER_RESULT_MISALIGNED);
         CHECK(planner_resume(crooked), PLANNER_RESULT_MISALIGNED);
     }
     free(block);
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     PlannerPose pose = {5.5f, 5.5f, 0};
     enum { BEAMS = 1000 };
     PlannerBeam *beams = calloc(BEAMS, sizeof *beams);
@@ -149,7 +149,7 @@ static void odd_numbers(Planner *planner) {
                                 &beams[1].bearing.right, &angle,
                                 &tolerance};
             *fields[field] = ODD[i];
-            CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+            CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
             if (field == 7) {
                 beams[1].bearing = planner_bearing(angle);
             }
@@ -170,7 +170,7 @@ static void odd_numbers(Planner *planner) {
     }
     static const PlannerCell OFF[] = {{INT16_MAX, INT16_MAX}, {INT16_MIN, INT16_MIN}, {-1, 5}, {20, 5}};
     for (size_t i = 0; i < sizeof OFF / sizeof *OFF; i++) {
-        CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+        CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
         PlannerSeen seen = {OFF[i], 0};
         CHECK(planner_observe_cells(planner, OFF[i], &seen, 1), PLANNER_RESULT_OFF_GRID);
         PlannerAction action;
@@ -182,7 +182,7 @@ static void odd_numbers(Planner *planner) {
 // Frames without sense are refused, and a key refuses those without it.
 static void odd_frames(Planner *planner) {
     PlannerConfig config = usual();
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     uint32_t random = 1;
     int taken = 0;
     for (int i = 0; i < 100000; i++) {
@@ -203,14 +203,14 @@ static void odd_frames(Planner *planner) {
     CHECK(planner_transmit(planner, frame, length), PLANNER_RESULT_OK);
     CHECK(planner_receive(planner, frame, *length), PLANNER_RESULT_FRAME_OWN);
     config.id = 2;
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     CHECK(planner_receive(planner, frame, *length), PLANNER_RESULT_OK);
     config.is_keyed = 1;
     memset(config.key, 7, sizeof config.key);
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     CHECK(planner_receive(planner, frame, *length) >= PLANNER_RESULT_FRAME_LENGTH, true);
     config.bytes_per_tick = 0;
-    CHECK(planner_create(planner, &config), PLANNER_RESULT_OK);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
     bool *is_mute = malloc(sizeof *is_mute);
     CHECK(planner_is_mute(planner, is_mute), PLANNER_RESULT_OK);
     CHECK(*is_mute, true);

@@ -1,16 +1,13 @@
 //! The C interface: its header, what the library links, and its example in the emulator.
 
-use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result, bail};
-use object::{Object, ObjectSymbol};
-
 use crate::shell::{self, cargo, command};
-use crate::{firmware, host, install, tools};
+use crate::{c_library, firmware, host, install, tools};
+use anyhow::{Context, Result, bail};
 
-const HEADER: &str = "c-api/include/planner.h";
+pub(crate) const HEADER: &str = "c-api/include/planner.h";
 
 /// Writes the header.
 pub(crate) fn write_header() -> Result<()> {
@@ -33,69 +30,29 @@ fn header() -> Result<String> {
     tools::run("c-header", [shell::root().join("c-api")])
 }
 
-/// The library for the chip.
-fn library() -> Result<PathBuf> {
-    install::target(firmware::TARGET)?;
-    cargo([
-        "build",
-        "--profile=firmware",
-        "-p=c-api",
-        "--target",
-        firmware::TARGET,
-    ])
-    .run()?;
-    Ok(firmware::path("libplanner.a", firmware::TARGET))
-}
-
-/// No path from the library's functions leads to a panic: of an image with all of them
-/// the linker drops the panic handler.
-pub(crate) fn has_no_panic() -> Result<String> {
-    let library = library()?;
-    let header = header()?;
-    let functions = functions(&header);
-    let image = link(&library, &functions, &[])?;
-    let symbols = symbols(&image)?;
-    if let Some(missing) = functions.iter().find(|name| !symbols.contains(**name)) {
-        bail!("{} has no {missing}", library.display());
-    }
-    let panics = |symbols: &HashSet<String>| symbols.iter().any(|name| name.contains(HANDLER));
-    if !panics(&self::symbols(&firmware::image_that_panics()?)?) {
-        bail!("an image that panics has no {HANDLER}: has it another name now?");
-    }
-    if panics(&symbols) {
-        link(&library, &functions, &[format!("--why-live=*{HANDLER}*")])?;
-        bail!("the library for C can panic; the linker says above from where");
-    }
-    Ok(format!("{} functions of C", functions.len()))
-}
-
-/// Part of the name of the function that every panic ends in.
-const HANDLER: &str = "rust_begin_unwind";
-
-fn symbols(image: &Path) -> Result<HashSet<String>> {
-    let bytes = fs::read(image)?;
-    let elf = object::File::parse(&*bytes)?;
-    let names = elf.symbols().map(|symbol| Ok(symbol.name()?.to_owned()));
-    names.collect()
+/// Asks the linker from which functions of a library a panic can be reached.
+pub(crate) fn show_who_panics(library: &Path) -> Result<()> {
+    let header = fs::read_to_string(shell::root().join(HEADER))?;
+    let option = format!("--why-live=*{}*", c_library::PANIC_HANDLER);
+    link(library, &functions(&header), &[option])
 }
 
 /// An image of the given functions and what they need.
-fn link(library: &Path, functions: &[&str], options: &[String]) -> Result<PathBuf> {
-    let image = library.with_file_name("c-functions");
+fn link(library: &Path, functions: &[&str], options: &[String]) -> Result<()> {
     let linked = command(linker()?)
         .args(["-flavor", "gnu", "--gc-sections", "--entry=planner_create"])
         .args(functions.iter().map(|name| format!("--undefined={name}")))
         .args(options)
         .arg(library)
         .arg("-o")
-        .arg(&image);
+        .arg(library.with_file_name("c-functions"));
     println!("$ {linked}");
     let output = linked.output()?;
     firmware::print_chains(&format!("{}{}", output.stdout, output.stderr));
     if !output.success() {
         bail!("the library does not link:\n{}", output.stderr);
     }
-    Ok(image)
+    Ok(())
 }
 
 /// The linker that comes with the compiler.
@@ -115,7 +72,7 @@ fn linker() -> Result<PathBuf> {
 }
 
 /// The names of the functions that a header declares.
-fn functions(header: &str) -> Vec<&str> {
+pub(crate) fn functions(header: &str) -> Vec<&str> {
     let code = header
         .lines()
         .filter(|line| !line.trim_start().starts_with("//"));
@@ -157,36 +114,34 @@ pub(crate) fn misuse_is_answered() -> Result<String> {
     Ok(String::new())
 }
 
-/// The example in C links with the static library, without a C library, and
-/// explores in the emulator.
+/// The example in C links with the object and newlib, explores in the emulator, and runs
+/// on newlib's functions where both have one.
 pub(crate) fn example_explores() -> Result<String> {
     install::qemu()?;
-    install::c_compiler()?;
-    let library = library()?;
-    let image = library.with_file_name("c-example");
+    install::newlib()?;
+    let object = c_library::build(firmware::TARGET, c_library::Cells::Many)?;
+    let image = object.with_file_name("c-example");
     let source = |name: &str| PathBuf::from("c-api/example").join(name);
-    command(install::C_COMPILER)
-        .args([
-            "-mcpu=cortex-m4",
-            "-mthumb",
-            "-mfloat-abi=hard",
-            "-mfpu=fpv4-sp-d16",
-        ])
-        .args([
-            "-std=c11",
-            "-Os",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-ffreestanding",
-            "-nostdlib",
-        ])
+    let link = command(install::C_COMPILER)
+        .args(CHIP)
+        .args(["-std=c11", "-Os", "-Wall", "-Wextra", "-Werror"])
+        .args(["-nostartfiles", "--specs=nano.specs"])
         .args(["-I", "c-api/include", "-T"])
         .arg(source("stm32f405.ld"))
-        .args([source("main.c"), source("board.c"), library])
-        .args(["-Wl,--gc-sections,-z,noexecstack", "-o"])
-        .arg(&image)
-        .run()?;
+        .args([source("main.c"), source("board.c"), object])
+        .args(["-lm", "-Wl,--gc-sections,-z,noexecstack"])
+        .args(NEWLIBS.map(|(name, _)| format!("-Wl,--trace-symbol={name}")))
+        .arg("-o")
+        .arg(&image);
+    println!("$ {link}");
+    let linked = link.output()?;
+    let said = format!("{}{}", linked.stdout, linked.stderr);
+    if !linked.success() {
+        bail!("the example in C does not link:\n{said}");
+    }
+    for (name, library) in NEWLIBS {
+        comes_from(&said, name, library)?;
+    }
     other_enumerations_do_not_compile()?;
     let output = firmware::emulate("c-example")?;
     print!("{}{}", output.stdout, output.stderr);
@@ -195,6 +150,33 @@ pub(crate) fn example_explores() -> Result<String> {
     }
     let flash = firmware::flash(&image)?;
     Ok(format!("flash {flash} bytes"))
+}
+
+/// What the chip's compiler is told of the chip.
+pub(crate) const CHIP: [&str; 4] = [
+    "-mcpu=cortex-m4",
+    "-mthumb",
+    "-mfloat-abi=hard",
+    "-mfpu=fpv4-sp-d16",
+];
+
+/// Functions that the library has too, and whose the example's must be.
+const NEWLIBS: [(&str, &str); 2] = [("memcpy", "libc"), ("sinf", "libm")];
+
+/// The linker says that it took the function from that library, and from nowhere else.
+fn comes_from(said: &str, name: &str, library: &str) -> Result<()> {
+    let mark = format!(": definition of {name}");
+    let found: Vec<&str> = said
+        .lines()
+        .filter_map(|line| line.strip_suffix(&mark))
+        .collect();
+    match found[..] {
+        [place] if place.contains(&format!("/{library}")) => {
+            println!("{name}: {place}");
+            Ok(())
+        }
+        _ => bail!("{name} is to come from {library}, not from {found:?}:\n{said}"),
+    }
 }
 
 /// With enumerations of four bytes, structures would not look as the library thinks:

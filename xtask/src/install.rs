@@ -107,6 +107,20 @@ pub(crate) fn c_compiler() -> Result<()> {
     package(C_COMPILER, "gcc-arm-none-eabi")
 }
 
+/// The C library for the chip.
+pub(crate) fn newlib() -> Result<()> {
+    const LIBRARY: &str = "libc_nano.a";
+    c_compiler()?;
+    // It answers with a path where there is one.
+    let place = command(C_COMPILER)
+        .arg(format!("-print-file-name={LIBRARY}"))
+        .output()?;
+    match place.stdout.trim() {
+        LIBRARY => install(LIBRARY, "libnewlib-arm-none-eabi"),
+        _ => Ok(()),
+    }
+}
+
 /// The compiler for C and C++ on this machine, with its sanitizers.
 pub(crate) fn host_compiler() -> Result<()> {
     package("g++", "g++")

@@ -28,6 +28,8 @@ macro_rules! eprint {
 
 mod budget;
 mod c_interface;
+mod c_library;
+mod c_stack;
 mod checks;
 mod documents;
 mod firmware;
@@ -89,6 +91,15 @@ enum Task {
     LabWeb,
     /// Writes the header of the C interface, c-api/include/planner.h.
     CHeader,
+    /// Builds the library for C as one object; prints its path.
+    CLibrary {
+        /// The processor, by Rust's name of it; `hf` has a floating-point unit.
+        #[arg(long, value_name = "NAME", default_value = firmware::TARGET, value_parser = c_library::TARGETS)]
+        target: String,
+        /// Largest width and height of a map, in cells.
+        #[arg(long, value_name = "N", default_value = "128")]
+        cells: c_library::Cells,
+    },
     /// Counts the lines of code of each package, without comments, blank lines and tests.
     Lines {
         /// Where to count.
@@ -120,6 +131,7 @@ fn main() -> ExitCode {
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::LabWeb => lab::build_page().map(|size| println!("{size}")),
         Task::CHeader => c_interface::write_header(),
+        Task::CLibrary { target, cells } => c_library::build_and_tell(&target, cells),
         Task::Lines { folder } => lines::print(&folder),
         Task::Soak { runs, misled } => soak(runs, misled),
     };

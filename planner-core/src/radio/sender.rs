@@ -11,7 +11,8 @@ use crate::robot::RobotId;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinkConfig {
-    /// Where cell `(0, 0)` lies in the fleet's common frame, in millimetres.
+    /// Where the grid lies in the fleet's common frame, in millimetres: its north-western
+    /// corner, which is that of cell `(0, 0)`.
     pub origin_mm: (i32, i32),
     /// Side of a cell in millimetres.
     pub cell_mm: u16,

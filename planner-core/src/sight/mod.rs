@@ -5,6 +5,7 @@
 
 mod beam;
 mod line;
+mod metres;
 mod scan;
 mod walk;
 

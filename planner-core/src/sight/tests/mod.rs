@@ -1,3 +1,4 @@
+mod metres;
 mod scan;
 
 use std::vec::Vec;

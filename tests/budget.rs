@@ -17,6 +17,7 @@ fn planners_fit_their_budget() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let budget = file::Budget::read(root).unwrap_or_else(|error| panic!("{error}"));
     let measured = [
+        ("explorer_32x32_bytes", size_of::<Explorer<4, 4>>()),
         ("explorer_64x64_bytes", size_of::<Explorer<8, 8>>()),
         ("explorer_128x128_bytes", size_of::<Explorer<16, 16>>()),
         (

@@ -5,6 +5,9 @@
 // One robot is one Planner: memory of yours, for example a static variable. The
 // library allocates nothing and keeps no state elsewhere. Calls for different
 // planners may run at the same time, calls for one planner must not.
+//
+// `Stack:` is what a call takes at most on a Cortex-M4F, whatever its input: added up in
+// the code itself, and checked.
 
 #ifndef PLANNER_H
 #define PLANNER_H
@@ -17,7 +20,7 @@
 // Define PLANNER_CELLS_32 or PLANNER_CELLS_64 for the object of that size.
 #if defined(PLANNER_CELLS_32)
 #define PLANNER_MAX_CELLS 32
-#define PLANNER_WORDS 482
+#define PLANNER_WORDS 529
 #elif defined(PLANNER_CELLS_64)
 #define PLANNER_MAX_CELLS 64
 #define PLANNER_WORDS 1153
@@ -179,6 +182,20 @@ typedef enum {
   PLANNER_SENSOR_TRUTHFUL = 2,
 } PlannerSensor;
 
+// What is known of a cell.
+typedef enum {
+  // Nothing.
+  PLANNER_STATE_UNKNOWN = 0,
+  // Free, and so are its neighbours, or known otherwise.
+  PLANNER_STATE_FREE = 1,
+  // Free, and beside a cell of which nothing is known.
+  PLANNER_STATE_FRONTIER = 2,
+  // Seen blocked, but not often enough to believe it.
+  PLANNER_STATE_DOUBTFUL = 3,
+  // An obstacle.
+  PLANNER_STATE_OBSTACLE = 4,
+} PlannerState;
+
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.
 typedef struct {
   uint64_t words[PLANNER_WORDS];
@@ -205,9 +222,11 @@ typedef struct {
   PlannerCell start;
   // Side of a cell in millimetres, above 0.
   uint16_t cell_mm;
-  // Where cell 0,0 lies in the common frame, in millimetres.
+  // Where the grid's north-western corner, which is that of cell 0,0, lies in the
+  // common frame, in millimetres.
   int32_t origin_x_mm;
-  // The same along y.
+  // The same along y. For a square grid around the place where poses in metres begin:
+  // minus half of its side for x, plus half of it for y.
   int32_t origin_y_mm;
   // Bytes that the robot may send a tick on average; 0: it only listens, which
   // `planner_is_mute` tells. Less than `PLANNER_MAX_FRAME`: a frame every few ticks.
@@ -289,6 +308,33 @@ typedef struct {
   PlannerDirection look;
 } PlannerAction;
 
+// Where a robot is, what it knows, and what it has from others. Counts begin when the
+// planner is created; those of 16 bits stay at their largest value.
+typedef struct {
+  // Where it stands.
+  PlannerCell position;
+  // Where it goes; where it stands, if it goes nowhere.
+  PlannerCell goal;
+  // Whether it goes somewhere: 0 or 1.
+  uint8_t has_goal;
+  // Cells of the map that are known.
+  uint32_t known;
+  // Those of them that are frontiers.
+  uint32_t frontiers;
+  // Cells that others told before the robot saw them.
+  uint32_t heard_cells;
+  // Cells that others told otherwise than the robot saw them. Where sensors are right
+  // and all robots have the same origin and axes: none. A robot that takes left for
+  // right shows here.
+  uint16_t contradictions;
+  // The robot that told most of them; 255: nobody told more than half.
+  uint8_t contradicted_by;
+  // Frames of another robot with this robot's id.
+  uint16_t same_id;
+  // Frames that were damaged, or not signed with the key.
+  uint16_t refused;
+} PlannerStatus;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -298,14 +344,14 @@ extern "C" {
 // but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 // planner that runs goes on.
 //
-// Stack: 0 bytes.
+// Stack: 896 bytes.
 PlannerResult planner_create(Planner *planner, size_t bytes, const PlannerConfig *config);
 
 // The direction `radians` from the robot's heading; grows from east to south. Make it
 // once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
 // finite gives a direction whose beams say nothing.
 //
-// Stack: 0 bytes.
+// Stack: 256 bytes.
 PlannerBearing planner_bearing(float radians);
 
 // Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
@@ -325,7 +371,7 @@ PlannerBearing planner_bearing(float radians);
 // looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
 // cell that the robot stands on is free, whatever was seen of it from elsewhere.
 //
-// Stack: 0 bytes.
+// Stack: 2432 bytes.
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
@@ -337,7 +383,7 @@ PlannerResult planner_observe_scan(Planner *planner,
 // which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 // says what looks must show.
 //
-// Stack: 0 bytes.
+// Stack: 1408 bytes.
 PlannerResult planner_observe_cells(Planner *planner,
                                     PlannerCell centre,
                                     const PlannerSeen *cells,
@@ -345,26 +391,26 @@ PlannerResult planner_observe_cells(Planner *planner,
 
 // Decides what the robot does now. Call it once a tick.
 //
-// Stack: 0 bytes.
+// Stack: 2048 bytes.
 PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 
 // Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
 // or wants it to try again what it gave up. Without a stop, what refused a step or
 // showed nothing is tried anew.
 //
-// Stack: 0 bytes.
+// Stack: 128 bytes.
 PlannerResult planner_resume(Planner *planner);
 
 // Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 // it could reach within its map; otherwise it gave up.
 //
-// Stack: 0 bytes.
+// Stack: 128 bytes.
 bool planner_stop_is_complete(uint8_t stop);
 
 // Says how the step of the last move went: [`PLANNER_MOVED`],
 // [`PLANNER_BLOCKED`] or [`PLANNER_HELD`].
 //
-// Stack: 0 bytes.
+// Stack: 384 bytes.
 PlannerResult planner_report(Planner *planner, uint8_t motion);
 
 // Writes the next frame for the other robots into `frame`, which holds
@@ -372,36 +418,88 @@ PlannerResult planner_report(Planner *planner, uint8_t motion);
 // nothing to send in this tick any more. A mute planner never has anything to send:
 // see `planner_is_mute`.
 //
-// Stack: 0 bytes.
+// Stack: 1024 bytes.
 PlannerResult planner_transmit(Planner *planner, uint8_t *frame, size_t *length);
 
 // Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
 //
-// Stack: 0 bytes.
+// Stack: 128 bytes.
 PlannerResult planner_is_mute(Planner *planner, bool *is_mute);
 
 // Takes in a frame of another robot, at any time. A result from
 // `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 //
-// Stack: 0 bytes.
+// Stack: 896 bytes.
 PlannerResult planner_receive(Planner *planner, const uint8_t *frame, size_t length);
-
-// Writes how many cells of the map are known, and how many of them are frontiers.
-//
-// Stack: 0 bytes.
-PlannerResult planner_known(Planner *planner, uint32_t *known, uint32_t *frontiers);
 
 // Writes how many cells were free and are walls now (doors that somebody shut), and the
 // last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
 // one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
 // seen: what lies behind these is not part of it.
 //
-// Stack: 0 bytes.
+// Stack: 128 bytes.
 PlannerResult planner_shut(Planner *planner,
                            uint32_t *cells,
                            PlannerCell *places,
                            size_t room,
                            size_t *count);
+
+// The pose of a robot at `x`, `y` in metres, y to the left of x, whose `yaw` in radians
+// grows counter-clockwise from x: the frame of ROS and of the Crazyflie. In the grid y
+// and angles grow the other way, so angles of such a robot's sensors go to
+// `planner_bearing` with their sign changed. `PLANNER_RESULT_CELL_SIZE`: the
+// configuration's `cell_mm` is 0.
+//
+// Stack: 128 bytes.
+PlannerResult planner_pose_from_metres(const PlannerConfig *config,
+                                       float x,
+                                       float y,
+                                       float yaw,
+                                       PlannerPose *pose);
+
+// The middle of a cell in the same frame, in metres: where to go for a move to that cell.
+//
+// Stack: 128 bytes.
+PlannerResult planner_middle_in_metres(const PlannerConfig *config,
+                                       PlannerCell cell,
+                                       float *x,
+                                       float *y);
+
+// A `PlannerDirection` as a yaw in radians, counter-clockwise from the east.
+//
+// Stack: 128 bytes.
+float planner_yaw(uint8_t direction);
+
+// Writes where the robot is, where it goes, what it knows, and what it has from others.
+//
+// Stack: 128 bytes.
+PlannerResult planner_status(Planner *planner, PlannerStatus *status);
+
+// Writes the `PlannerState` of a cell. `PLANNER_RESULT_OFF_GRID`: there is no such cell.
+//
+// Stack: 128 bytes.
+PlannerResult planner_cell(Planner *planner, PlannerCell cell, uint8_t *state);
+
+// Writes the `PlannerState` of the cells of row `y`, from the west: at most `room`
+// of them; `count` is how many. Work: one cell after the other.
+//
+// Stack: 256 bytes.
+PlannerResult planner_row(Planner *planner, int16_t y, uint8_t *states, size_t room, size_t *count);
+
+// A `PlannerResult` in words, for logs.
+//
+// Stack: 128 bytes.
+const char *planner_result_text(uint8_t result);
+
+// A `PlannerStop` in words.
+//
+// Stack: 128 bytes.
+const char *planner_stop_text(uint8_t stop);
+
+// A `PlannerWait` in words.
+//
+// Stack: 128 bytes.
+const char *planner_wait_text(uint8_t wait);
 
 #ifdef __cplusplus
 }  // extern "C"

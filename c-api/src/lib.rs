@@ -8,6 +8,7 @@
 #![cfg_attr(target_os = "none", no_std)]
 
 mod place;
+mod queries;
 mod types;
 
 use planner_core::explorer::{Config, Explorer};
@@ -17,10 +18,14 @@ use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
 use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
 pub use place::{PLANNER_MAX_CELLS, PLANNER_WORDS, Planner};
+pub use queries::{
+    planner_cell, planner_middle_in_metres, planner_pose_from_metres, planner_result_text,
+    planner_row, planner_status, planner_stop_text, planner_wait_text, planner_yaw,
+};
 pub use types::{
     PlannerAction, PlannerActionKind, PlannerBeam, PlannerBearing, PlannerCell, PlannerConfig,
-    PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerSensor, PlannerStop,
-    PlannerWait,
+    PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerSensor, PlannerState,
+    PlannerStatus, PlannerStop, PlannerWait,
 };
 
 use place::{Robot, input, inputs, output, robot};
@@ -50,7 +55,7 @@ const _: () = assert!(PLANNER_MAX_SHUT == MOST_PLACES);
 /// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 /// planner that runs goes on.
 ///
-/// Stack: 0 bytes.
+/// Stack: 896 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_create(
     planner: *mut Planner,
@@ -94,7 +99,7 @@ pub extern "C" fn planner_create(
 /// once for each beam of a sensor: it takes a sine and a cosine. An angle that is not
 /// finite gives a direction whose beams say nothing.
 ///
-/// Stack: 0 bytes.
+/// Stack: 256 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
     Bearing::from_radians(radians).into()
@@ -117,7 +122,7 @@ pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
 /// looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
 /// cell that the robot stands on is free, whatever was seen of it from elsewhere.
 ///
-/// Stack: 0 bytes.
+/// Stack: 2432 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_scan(
     planner: *mut Planner,
@@ -153,7 +158,7 @@ pub extern "C" fn planner_observe_scan(
 /// which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 /// says what looks must show.
 ///
-/// Stack: 0 bytes.
+/// Stack: 1408 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_cells(
     planner: *mut Planner,
@@ -177,7 +182,7 @@ pub extern "C" fn planner_observe_cells(
 
 /// Decides what the robot does now. Call it once a tick.
 ///
-/// Stack: 0 bytes.
+/// Stack: 2048 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction) -> PlannerResult {
     answer(|| {
@@ -193,7 +198,7 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
 /// or wants it to try again what it gave up. Without a stop, what refused a step or
 /// showed nothing is tried anew.
 ///
-/// Stack: 0 bytes.
+/// Stack: 128 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
     answer(|| {
@@ -205,7 +210,7 @@ pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
 /// Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 /// it could reach within its map; otherwise it gave up.
 ///
-/// Stack: 0 bytes.
+/// Stack: 128 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
     let code = stop.checked_sub(1);
@@ -216,7 +221,7 @@ pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
 /// Says how the step of the last move went: [`PLANNER_MOVED`],
 /// [`PLANNER_BLOCKED`] or [`PLANNER_HELD`].
 ///
-/// Stack: 0 bytes.
+/// Stack: 384 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerResult {
     answer(|| {
@@ -236,7 +241,7 @@ pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerRe
 /// nothing to send in this tick any more. A mute planner never has anything to send:
 /// see `planner_is_mute`.
 ///
-/// Stack: 0 bytes.
+/// Stack: 1024 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_transmit(
     planner: *mut Planner,
@@ -257,7 +262,7 @@ pub extern "C" fn planner_transmit(
 
 /// Whether the configuration lets the robot send nothing: its `bytes_per_tick` is 0.
 ///
-/// Stack: 0 bytes.
+/// Stack: 128 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> PlannerResult {
     answer(|| {
@@ -270,7 +275,7 @@ pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> 
 /// Takes in a frame of another robot, at any time. A result from
 /// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
 ///
-/// Stack: 0 bytes.
+/// Stack: 896 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_receive(
     planner: *mut Planner,
@@ -285,30 +290,12 @@ pub extern "C" fn planner_receive(
     })
 }
 
-/// Writes how many cells of the map are known, and how many of them are frontiers.
-///
-/// Stack: 0 bytes.
-#[unsafe(no_mangle)]
-pub extern "C" fn planner_known(
-    planner: *mut Planner,
-    known: *mut u32,
-    frontiers: *mut u32,
-) -> PlannerResult {
-    answer(|| {
-        let map = robot(planner)?.explorer.map();
-        let (known, frontiers) = (output(known)?, output(frontiers)?);
-        known.write(map.known_cells());
-        frontiers.write(map.frontiers());
-        Ok(())
-    })
-}
-
 /// Writes how many cells were free and are walls now (doors that somebody shut), and the
 /// last of them into `places`: at most `room` of at most [`PLANNER_MAX_SHUT`], the latest
 /// one last; `count` is how many. A stop with `planner_stop_is_complete` means complete as
 /// seen: what lies behind these is not part of it.
 ///
-/// Stack: 0 bytes.
+/// Stack: 128 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_shut(
     planner: *mut Planner,
@@ -323,7 +310,7 @@ pub extern "C" fn planner_shut(
         let last = shut.places();
         let last = last.get(last.len().saturating_sub(room)..).unwrap_or(&[]);
         for (i, at) in last.iter().enumerate() {
-            output(places.wrapping_add(i))?.write(PlannerCell { x: at.x, y: at.y });
+            output(places.wrapping_add(i))?.write(PlannerCell::from(*at));
         }
         cells.write(shut.cells());
         count.write(last.len());

@@ -28,7 +28,7 @@ pub const PLANNER_WORDS: usize = words(PLANNER_MAX_CELLS);
 /// and one that tells that it is there and whether it talks.
 pub(crate) const fn words(cells: u16) -> usize {
     match cells {
-        32 => 482,
+        32 => 529,
         64 => 1153,
         _ => 3630,
     }

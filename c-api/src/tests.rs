@@ -36,6 +36,26 @@ const NOTHING: PlannerAction = PlannerAction {
     look: PlannerDirection::East,
 };
 
+/// A status to be overwritten.
+const STATUS: PlannerStatus = PlannerStatus {
+    position: CONFIG.start,
+    goal: CONFIG.start,
+    has_goal: 9,
+    known: 9,
+    frontiers: 9,
+    heard_cells: 9,
+    contradictions: 9,
+    contradicted_by: 9,
+    same_id: 9,
+    refused: 9,
+};
+
+fn status(planner: *mut Planner) -> PlannerStatus {
+    let mut status = STATUS;
+    assert_eq!(planner_status(planner, &mut status), PlannerResult::Ok);
+    status
+}
+
 fn memory() -> Box<[u64]> {
     vec![0; PLANNER_WORDS].into()
 }
@@ -94,7 +114,14 @@ fn null_is_answered() {
         planner_transmit(ready, null_mut(), &mut length),
         planner_transmit(ready, frame.as_mut_ptr(), null_mut()),
         planner_receive(ready, null(), 16),
-        planner_known(ready, null_mut(), null_mut()),
+        planner_status(ready, null_mut()),
+        planner_status(null_mut(), &mut STATUS.clone()),
+        planner_cell(ready, centre, null_mut()),
+        planner_row(ready, 1, null_mut(), 1, &mut length),
+        planner_row(ready, 1, frame.as_mut_ptr(), 1, null_mut()),
+        planner_pose_from_metres(null(), 0.0, 0.0, 0.0, &mut pose.clone()),
+        planner_pose_from_metres(&CONFIG, 0.0, 0.0, 0.0, null_mut()),
+        planner_middle_in_metres(&CONFIG, centre, null_mut(), null_mut()),
         planner_resume(null_mut()),
         planner_is_mute(ready, null_mut()),
     ] {
@@ -132,8 +159,10 @@ fn misaligned_is_answered() {
         planner_observe_cells(ready, centre, crooked.cast(), 1),
         planner_tick(ready, crooked.cast()),
         planner_transmit(ready, straight.cast(), crooked.cast()),
-        planner_known(ready, crooked.cast(), straight.cast()),
-        planner_known(ready, straight.cast(), crooked.cast()),
+        planner_status(ready, crooked.cast()),
+        planner_row(ready, 1, straight.cast(), 1, crooked.cast()),
+        planner_pose_from_metres(crooked.cast(), 0.0, 0.0, 0.0, straight.cast()),
+        planner_middle_in_metres(&CONFIG, centre, crooked.cast(), straight.cast()),
     ] {
         assert_eq!(result, PlannerResult::Misaligned);
     }
@@ -311,11 +340,10 @@ fn beams_show_cells_and_bad_ones_nothing() {
             y: 1.5,
             heading: 0.0,
         };
-        let (length, (mut known, mut frontiers)) = (beams.len(), (0, 0));
+        let length = beams.len();
         let scan = planner_observe_scan(ready, &pose, 4.0, 0.1, beams.as_ptr(), length);
         assert_eq!(scan, PlannerResult::Ok);
-        planner_known(ready, &mut known, &mut frontiers);
-        known
+        status(ready).known
     };
     assert_eq!(known_after(&[beam(0.0, 1.0)]), 2);
     assert_eq!(known_after(&[beam(0.0, 2.5); 100]), 4);
@@ -352,9 +380,7 @@ fn off_the_grid_nothing_is_decided() {
         let pose = PlannerPose { x, y, heading: 0.0 };
         planner_observe_scan(ready, &pose, 4.0, 0.1, &beam, 1)
     };
-    let (mut known, mut frontiers) = (0, 0);
-    planner_known(ready, &mut known, &mut frontiers);
-    let before = known;
+    let before = status(ready);
     for _ in 0..200 {
         assert_eq!(scan(-0.5, 1.5), PlannerResult::OffGrid);
         assert_eq!(tick(ready).wait, PlannerWait::Pose);
@@ -369,8 +395,7 @@ fn off_the_grid_nothing_is_decided() {
         assert_eq!(action.kind, PlannerActionKind::Wait);
         assert_eq!(action.wait, PlannerWait::Pose);
     }
-    planner_known(ready, &mut known, &mut frontiers);
-    assert_eq!(known, before);
+    assert_eq!(status(ready), before);
     assert_eq!(look(ready, CONFIG.start), PlannerResult::Ok);
     assert_eq!(tick(ready).kind, PlannerActionKind::Move);
 }
@@ -577,13 +602,10 @@ fn two_robots_explore_a_hall_and_hear_each_other() {
         }
     }
     assert_eq!(stopped, 2);
-    let (mut known, mut frontiers) = (0, 1);
-    assert_eq!(
-        planner_known(robots[0], &mut known, &mut frontiers),
-        PlannerResult::Ok
-    );
-    assert_eq!(frontiers, 0);
-    assert!(known >= 7 * 9 + 2 * 7, "{known}");
+    let now = status(robots[0]);
+    assert_eq!(now.frontiers, 0);
+    assert!(now.known >= 7 * 9 + 2 * 7, "{now:?}");
+    assert!(now.heard_cells > 0 && now.contradictions == 0, "{now:?}");
 }
 
 #[test]
@@ -644,4 +666,128 @@ fn what_was_shut_is_named() {
     let (mut cells, mut count) = (0, 0);
     let result = planner_shut(ready, &mut cells, null_mut(), 8, &mut count);
     assert_eq!(result, PlannerResult::Null);
+}
+
+#[test]
+fn a_map_is_read_by_cells_and_by_rows() {
+    let mut memory = memory();
+    let ready = created(&mut memory, CONFIG);
+    let read = |x, y| {
+        let mut state = 9;
+        let result = planner_cell(ready, PlannerCell { x, y }, &mut state);
+        (result, state)
+    };
+    let seen = [(2, 1, 0), (3, 1, 1)].map(|(x, y, blocked)| PlannerSeen {
+        cell: PlannerCell { x, y },
+        blocked,
+    });
+    planner_observe_cells(ready, CONFIG.start, seen.as_ptr(), seen.len());
+    let [unknown, frontier, obstacle] = [
+        PlannerState::Unknown as u8,
+        PlannerState::Frontier as u8,
+        PlannerState::Obstacle as u8,
+    ];
+    let expected = [unknown, frontier, frontier, obstacle, unknown];
+    for (x, &state) in (0..).zip(&expected) {
+        assert_eq!(read(x, 1), (PlannerResult::Ok, state), "{x}");
+    }
+    for (x, y) in [(-1, 1), (9, 1), (1, 9)] {
+        assert_eq!(read(x, y), (PlannerResult::OffGrid, 9));
+    }
+    let (mut row, mut count) = ([9; 12], 0);
+    let result = planner_row(ready, 1, row.as_mut_ptr(), 5, &mut count);
+    assert_eq!((result, count), (PlannerResult::Ok, 5));
+    assert_eq!((&row[..5], row[5]), (&expected[..], 9));
+    let result = planner_row(ready, 1, row.as_mut_ptr(), 12, &mut count);
+    assert_eq!(
+        (result, count, row[8], row[9]),
+        (PlannerResult::Ok, 9, unknown, 9)
+    );
+    let result = planner_row(ready, 9, row.as_mut_ptr(), 12, &mut count);
+    assert_eq!(result, PlannerResult::OffGrid);
+}
+
+#[test]
+fn a_status_says_where_the_robot_is_and_goes() {
+    let mut memory = memory();
+    let ready = created(&mut memory, CONFIG);
+    assert_eq!(look(ready, CONFIG.start), PlannerResult::Ok);
+    assert_eq!(tick(ready).kind, PlannerActionKind::Move);
+    let now = status(ready);
+    assert_eq!((now.position, now.has_goal), (CONFIG.start, 1));
+    assert_ne!(now.goal, now.position);
+    assert!(now.frontiers > 0 && now.known >= 5, "{now:?}");
+    assert_eq!(
+        (now.contradictions, now.contradicted_by, now.refused),
+        (0, 255, 0)
+    );
+}
+
+#[test]
+fn metres_are_those_of_the_core() {
+    let config = PlannerConfig {
+        origin_x_mm: -450,
+        origin_y_mm: 450,
+        ..CONFIG
+    };
+    let mut pose = PlannerPose {
+        x: 0.0,
+        y: 0.0,
+        heading: 0.0,
+    };
+    let made = planner_pose_from_metres(&config, 0.1, 0.2, 0.5, &mut pose);
+    assert_eq!(made, PlannerResult::Ok);
+    assert!(
+        (pose.x - 5.5).abs() < 1e-4 && (pose.y - 2.5).abs() < 1e-4,
+        "{pose:?}"
+    );
+    assert_eq!(pose.heading, -0.5);
+    let (mut x, mut y) = (0.0, 0.0);
+    let cell = PlannerCell { x: 5, y: 2 };
+    assert_eq!(
+        planner_middle_in_metres(&config, cell, &mut x, &mut y),
+        PlannerResult::Ok
+    );
+    assert!((x - 0.1).abs() < 1e-5 && (y - 0.2).abs() < 1e-5, "{x}, {y}");
+    assert!(planner_yaw(PlannerDirection::North as u8) > 1.5);
+    let none = PlannerConfig {
+        cell_mm: 0,
+        ..config
+    };
+    let made = planner_pose_from_metres(&none, 0.1, 0.2, 0.5, &mut pose);
+    assert_eq!(made, PlannerResult::CellSize);
+}
+
+#[test]
+fn codes_have_words() {
+    use std::ffi::CStr;
+    // SAFETY: all texts are constants that end with a zero byte.
+    let read = |text| unsafe { CStr::from_ptr(text) }.to_str().unwrap();
+    assert_eq!(
+        read(planner_result_text(PlannerResult::Memory as u8)),
+        "header and library are of different sizes"
+    );
+    assert_eq!(
+        read(planner_stop_text(PlannerStop::Held as u8)),
+        "gave up: a robot stayed in the way"
+    );
+    assert_eq!(
+        read(planner_wait_text(PlannerWait::Doubt as u8)),
+        "doubts a wall"
+    );
+    for beyond in [queries::RESULTS.len(), 255] {
+        assert_eq!(read(planner_result_text(beyond as u8)), "unknown");
+    }
+    for code in 0..=u8::MAX {
+        let stop = code.checked_sub(1).and_then(Reason::from_code);
+        let words = read(planner_stop_text(code));
+        assert_eq!(stop.is_some() || code == 0, words != "unknown", "{code}");
+        if let Some(reason) = stop {
+            assert_eq!(
+                words.starts_with("complete"),
+                reason.is_complete(),
+                "{words}"
+            );
+        }
+    }
 }

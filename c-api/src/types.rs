@@ -3,7 +3,7 @@
 use planner_core::explorer::SensorModel;
 use planner_core::radio::FrameError;
 use planner_core::sight::{Beam, Bearing, Pose};
-use planner_core::{Action, Direction, Reason, Wait};
+use planner_core::{Action, Cell, Direction, Map, Reason, Wait};
 
 /// What came of a call.
 #[repr(C)]
@@ -81,6 +81,69 @@ pub struct PlannerCell {
     pub y: i16,
 }
 
+impl From<Cell> for PlannerCell {
+    fn from(Cell { x, y }: Cell) -> Self {
+        Self { x, y }
+    }
+}
+
+/// What is known of a cell.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlannerState {
+    /// Nothing.
+    Unknown = 0,
+    /// Free, and so are its neighbours, or known otherwise.
+    Free = 1,
+    /// Free, and beside a cell of which nothing is known.
+    Frontier = 2,
+    /// Seen blocked, but not often enough to believe it.
+    Doubtful = 3,
+    /// An obstacle.
+    Obstacle = 4,
+}
+
+impl PlannerState {
+    pub(crate) fn of<const TW: usize, const TH: usize>(map: &Map<TW, TH>, cell: Cell) -> Self {
+        match () {
+            () if map.is_doubtful(cell) => Self::Doubtful,
+            () if !map.is_known(cell) => Self::Unknown,
+            () if map.is_obstacle(cell) => Self::Obstacle,
+            () if map.is_frontier(cell) => Self::Frontier,
+            () => Self::Free,
+        }
+    }
+}
+
+/// Where a robot is, what it knows, and what it has from others. Counts begin when the
+/// planner is created; those of 16 bits stay at their largest value.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannerStatus {
+    /// Where it stands.
+    pub position: PlannerCell,
+    /// Where it goes; where it stands, if it goes nowhere.
+    pub goal: PlannerCell,
+    /// Whether it goes somewhere: 0 or 1.
+    pub has_goal: u8,
+    /// Cells of the map that are known.
+    pub known: u32,
+    /// Those of them that are frontiers.
+    pub frontiers: u32,
+    /// Cells that others told before the robot saw them.
+    pub heard_cells: u32,
+    /// Cells that others told otherwise than the robot saw them. Where sensors are right
+    /// and all robots have the same origin and axes: none. A robot that takes left for
+    /// right shows here.
+    pub contradictions: u16,
+    /// The robot that told most of them; 255: nobody told more than half.
+    pub contradicted_by: u8,
+    /// Frames of another robot with this robot's id.
+    pub same_id: u16,
+    /// Frames that were damaged, or not signed with the key.
+    pub refused: u16,
+}
+
 /// How a planner is set up. All robots of a fleet agree on everything but the
 /// id, in which all differ, and the start.
 #[repr(C)]
@@ -137,6 +200,14 @@ pub enum PlannerSensor {
 }
 
 impl PlannerConfig {
+    /// Where the grid lies, and the side of its cells.
+    pub(crate) const fn grid(&self) -> Result<((i32, i32), u16), PlannerResult> {
+        match self.cell_mm {
+            0 => Err(PlannerResult::CellSize),
+            cell_mm => Ok(((self.origin_x_mm, self.origin_y_mm), cell_mm)),
+        }
+    }
+
     /// The model of its sensor; `None` if there is no such one.
     pub(crate) fn sensor(&self) -> Option<SensorModel> {
         const RANGERS: u8 = PlannerSensor::Rangers as u8;
@@ -347,6 +418,12 @@ impl From<&PlannerPose> for Pose {
     }
 }
 
+impl From<Pose> for PlannerPose {
+    fn from(Pose { x, y, heading }: Pose) -> Self {
+        Self { x, y, heading }
+    }
+}
+
 impl From<Bearing> for PlannerBearing {
     fn from(bearing: Bearing) -> Self {
         Self {
@@ -415,7 +492,7 @@ impl PlannerAction {
                 told.stop = stop.reason().into();
                 told.frontiers = stop.left();
                 if let Some(at) = stop.place() {
-                    told.at = PlannerCell { x: at.x, y: at.y };
+                    told.at = (*at).into();
                 }
             }
         }

@@ -40,8 +40,9 @@ static void nothing_is_created(Planner *planner) {
     PlannerAction action;
     uint8_t frame[PLANNER_MAX_FRAME] = {0};
     size_t length;
-    uint32_t known, frontiers;
+    uint32_t known;
     bool is_mute;
+    PlannerStatus status;
     PlannerResult wanted = PLANNER_RESULT_NOT_CREATED;
     CHECK(planner_observe_scan(planner, &pose, 5, PLANNER_TOLERANCE, NULL, 0), wanted);
     CHECK(planner_observe_cells(planner, (PlannerCell){5, 5}, NULL, 0), wanted);
@@ -50,7 +51,9 @@ static void nothing_is_created(Planner *planner) {
     CHECK(planner_resume(planner), wanted);
     CHECK(planner_transmit(planner, frame, &length), wanted);
     CHECK(planner_receive(planner, frame, 16), wanted);
-    CHECK(planner_known(planner, &known, &frontiers), wanted);
+    CHECK(planner_status(planner, &status), wanted);
+    CHECK(planner_cell(planner, (PlannerCell){5, 5}, frame), wanted);
+    CHECK(planner_row(planner, 5, frame, sizeof frame, &length), wanted);
     CHECK(planner_is_mute(planner, &is_mute), wanted);
     PlannerCell shut[PLANNER_MAX_SHUT];
     CHECK(planner_shut(planner, &known, shut, PLANNER_MAX_SHUT, &length), wanted);
@@ -219,12 +222,40 @@ static void odd_frames(Planner *planner) {
     free(frame);
 }
 
+// A row that is longer than the memory for it is cut; one off the grid is none.
+static void maps_are_read(Planner *planner) {
+    PlannerConfig config = usual();
+    CHECK(planner_create(planner, sizeof(Planner) - 8, &config), PLANNER_RESULT_MEMORY);
+    CHECK(planner_create(planner, sizeof(Planner), &config), PLANNER_RESULT_OK);
+    look(planner, config.start);
+    size_t *count = malloc(sizeof *count);
+    for (size_t room = 0; room <= 20; room++) {
+        uint8_t *row = malloc(room + 1);
+        CHECK(planner_row(planner, 5, row, room, count), PLANNER_RESULT_OK);
+        CHECK(*count, room);
+        free(row);
+    }
+    CHECK(planner_row(planner, 20, NULL, 9, count), PLANNER_RESULT_OFF_GRID);
+    CHECK(planner_row(planner, 5, NULL, 9, count), PLANNER_RESULT_NULL);
+    free(count);
+    uint8_t state;
+    CHECK(planner_cell(planner, config.start, &state), PLANNER_RESULT_OK);
+    CHECK(state, PLANNER_STATE_FREE);
+    CHECK(planner_cell(planner, (PlannerCell){-1, 0}, &state), PLANNER_RESULT_OFF_GRID);
+    for (int code = 0; code < 256; code++) {
+        CHECK(strlen(planner_result_text((uint8_t)code)) > 3, true);
+        CHECK(strlen(planner_stop_text((uint8_t)code)) > 3, true);
+        CHECK(strlen(planner_wait_text((uint8_t)code)) > 3, true);
+    }
+}
+
 int main(void) {
     Planner *planner = malloc(sizeof *planner);
     a_failed_create_changes_nothing(planner);
     odd_pointers_and_counts(planner);
     odd_numbers(planner);
     odd_frames(planner);
+    maps_are_read(planner);
     // Reasons by number, also those that do not exist.
     for (int stop = 0; stop < 256; stop++) {
         bool is_complete = stop == PLANNER_STOP_COMPLETE || stop == PLANNER_STOP_ENCLOSED

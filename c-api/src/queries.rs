@@ -1,0 +1,219 @@
+//! What is asked beside the verbs: for logs, for a display, for whoever looks for a fault.
+
+use core::ffi::{CStr, c_char};
+
+use planner_core::sight::Pose;
+use planner_core::{Cell, Direction, Planner as _};
+
+use crate::answer;
+use crate::place::{Planner, input, output, robot};
+use crate::types::{
+    PlannerCell, PlannerConfig, PlannerPose, PlannerResult, PlannerState, PlannerStatus,
+};
+
+/// The pose of a robot at `x`, `y` in metres, y to the left of x, whose `yaw` in radians
+/// grows counter-clockwise from x: the frame of ROS and of the Crazyflie. In the grid y
+/// and angles grow the other way, so angles of such a robot's sensors go to
+/// `planner_bearing` with their sign changed. `PLANNER_RESULT_CELL_SIZE`: the
+/// configuration's `cell_mm` is 0.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_pose_from_metres(
+    config: *const PlannerConfig,
+    x: f32,
+    y: f32,
+    yaw: f32,
+    pose: *mut PlannerPose,
+) -> PlannerResult {
+    answer(|| {
+        let (origin_mm, cell_mm) = input(config)?.grid()?;
+        let made = Pose::from_metres(x, y, yaw, origin_mm, cell_mm);
+        output(pose)?.write(made.into());
+        Ok(())
+    })
+}
+
+/// The middle of a cell in the same frame, in metres: where to go for a move to that cell.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_middle_in_metres(
+    config: *const PlannerConfig,
+    cell: PlannerCell,
+    x: *mut f32,
+    y: *mut f32,
+) -> PlannerResult {
+    answer(|| {
+        let (origin_mm, cell_mm) = input(config)?.grid()?;
+        let (x, y) = (output(x)?, output(y)?);
+        let middle = Cell::new(cell.x, cell.y).middle_in_metres(origin_mm, cell_mm);
+        x.write(middle.0);
+        y.write(middle.1);
+        Ok(())
+    })
+}
+
+/// A `PlannerDirection` as a yaw in radians, counter-clockwise from the east.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_yaw(direction: u8) -> f32 {
+    Direction::from_index(direction).yaw()
+}
+
+/// Writes where the robot is, where it goes, what it knows, and what it has from others.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_status(
+    planner: *mut Planner,
+    status: *mut PlannerStatus,
+) -> PlannerResult {
+    answer(|| {
+        let explorer = &robot(planner)?.explorer;
+        let (now, map, hearsay) = (explorer.status(), explorer.map(), explorer.hearsay());
+        let goal = now.goal.unwrap_or(now.position);
+        output(status)?.write(PlannerStatus {
+            position: now.position.into(),
+            goal: goal.into(),
+            has_goal: now.goal.is_some().into(),
+            known: map.known_cells(),
+            frontiers: map.frontiers(),
+            heard_cells: hearsay.cells,
+            contradictions: hearsay.contradictions,
+            contradicted_by: hearsay.contradicted_by.map_or(u8::MAX, |id| id.0),
+            same_id: hearsay.same_id,
+            refused: hearsay.refused,
+        });
+        Ok(())
+    })
+}
+
+/// Writes the `PlannerState` of a cell. `PLANNER_RESULT_OFF_GRID`: there is no such cell.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_cell(
+    planner: *mut Planner,
+    cell: PlannerCell,
+    state: *mut u8,
+) -> PlannerResult {
+    answer(|| {
+        let explorer = &robot(planner)?.explorer;
+        let cell = Cell::new(cell.x, cell.y);
+        if !explorer.map().extent().contains(cell) {
+            return Err(PlannerResult::OffGrid);
+        }
+        output(state)?.write(PlannerState::of(explorer.map(), cell) as u8);
+        Ok(())
+    })
+}
+
+/// Writes the `PlannerState` of the cells of row `y`, from the west: at most `room`
+/// of them; `count` is how many. Work: one cell after the other.
+///
+/// Stack: 256 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_row(
+    planner: *mut Planner,
+    y: i16,
+    states: *mut u8,
+    room: usize,
+    count: *mut usize,
+) -> PlannerResult {
+    answer(|| {
+        let map = robot(planner)?.explorer.map();
+        let (extent, count) = (map.extent(), output(count)?);
+        if !extent.contains(Cell::new(0, y)) {
+            return Err(PlannerResult::OffGrid);
+        }
+        let width = room.min(extent.width.into());
+        for (x, at) in (0..width).zip(0..) {
+            let state = PlannerState::of(map, Cell::new(at, y));
+            output(states.wrapping_add(x))?.write(state as u8);
+        }
+        count.write(width);
+        Ok(())
+    })
+}
+
+/// A `PlannerResult` in words, for logs.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_result_text(result: u8) -> *const c_char {
+    text(result.into(), &RESULTS)
+}
+
+/// A `PlannerStop` in words.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_stop_text(stop: u8) -> *const c_char {
+    text(stop.into(), &STOPS)
+}
+
+/// A `PlannerWait` in words.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_wait_text(wait: u8) -> *const c_char {
+    text(wait.into(), &WAITS)
+}
+
+fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
+    texts.get(code).unwrap_or(&c"unknown").as_ptr()
+}
+
+/// By [`PlannerResult`].
+pub(crate) const RESULTS: [&CStr; 21] = [
+    c"done",
+    c"a pointer is null",
+    c"a pointer is not aligned",
+    c"no planner was created in this memory",
+    c"the grid is empty, too large, or the start lies off it",
+    c"the pose, the range or the tolerance of the scan cannot be",
+    c"too many values",
+    c"no such motion",
+    c"a frame was not taken",
+    c"cells of 0 mm",
+    c"the place lies off the grid",
+    c"frame: no such length",
+    c"frame: another version",
+    c"frame: another kind",
+    c"frame: damaged, or another key",
+    c"frame: another grid",
+    c"frame: the robot's own",
+    c"frame: a field holds what it cannot",
+    c"frame: another robot has this id",
+    c"no such sensor",
+    c"header and library are of different sizes",
+];
+
+/// By [`PlannerStop`](crate::PlannerStop).
+pub(crate) const STOPS: [&CStr; 10] = [
+    c"exploring",
+    c"complete",
+    c"complete: what is left is enclosed",
+    c"gave up: the way stayed blocked",
+    c"gave up: back at the start",
+    c"gave up: no trace to follow",
+    c"complete within the map, which ends too early",
+    c"complete: what is left is out of reach",
+    c"gave up: a cell that no look shows",
+    c"gave up: a robot stayed in the way",
+];
+
+/// By [`PlannerWait`](crate::PlannerWait).
+pub(crate) const WAITS: [&CStr; 9] = [
+    c"does not wait",
+    c"waits for a look",
+    c"waits for a place on the grid",
+    c"searches the map",
+    c"waits for a cell that refused a step",
+    c"wants to look",
+    c"something is in its way",
+    c"on patrol",
+    c"doubts a wall",
+];

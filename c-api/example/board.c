@@ -8,7 +8,7 @@ extern uint32_t stack_top, data_start, data_end, data_load, bss_start, bss_end;
 
 int main(void);
 
-static uintptr_t semihosting(uintptr_t operation, uintptr_t argument) {
+uintptr_t board_semihosting(uintptr_t operation, uintptr_t argument) {
     register uintptr_t r0 __asm__("r0") = operation;
     register uintptr_t r1 __asm__("r1") = argument;
     __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
@@ -16,12 +16,12 @@ static uintptr_t semihosting(uintptr_t operation, uintptr_t argument) {
 }
 
 void board_print(const char *text) {
-    semihosting(0x04 /* SYS_WRITE0 */, (uintptr_t)text);
+    board_semihosting(0x04 /* SYS_WRITE0 */, (uintptr_t)text);
 }
 
 _Noreturn void board_exit(bool success) {
     for (;;) {
-        semihosting(0x18 /* SYS_EXIT */, success ? 0x20026 /* application exit */ : 0x20023);
+        board_semihosting(0x18 /* SYS_EXIT */, success ? 0x20026 /* application exit */ : 0x20023);
     }
 }
 

@@ -6,7 +6,8 @@ use anyhow::{Result, bail};
 
 use crate::shell::{Command, cargo, command};
 use crate::{
-    c_interface, c_library, documents, firmware, fuzz, host, install, lab, output, slurm, worst,
+    c_interface, c_library, crazyflie, documents, firmware, fuzz, host, install, lab, output,
+    slurm, worst,
 };
 
 /// One thing that must hold.
@@ -228,6 +229,11 @@ const CHECKS: &[Check] = &[
         name: "c-example",
         title: "the example in C explores in the emulator",
         run: c_interface::example_explores,
+    },
+    Check {
+        name: "crazyflie",
+        title: "three emulated Crazyflies explore a room with the app, 20 times",
+        run: crazyflie::explores,
     },
     Check {
         name: "example",

@@ -35,7 +35,14 @@ pub(crate) fn check() -> Result<String> {
 fn documents() -> Result<Vec<PathBuf>> {
     let mut documents = Vec::new();
     let mut folders = vec![shell::root().to_path_buf()];
-    for name in ["docs", "planner-core", "host-sim", "firmware", "xtask"] {
+    for name in [
+        "docs",
+        "planner-core",
+        "host-sim",
+        "firmware",
+        "xtask",
+        "examples/crazyflie",
+    ] {
         folders.extend(Some(shell::root().join(name)).filter(|folder| folder.is_dir()));
     }
     for folder in folders {

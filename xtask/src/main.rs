@@ -31,6 +31,7 @@ mod c_interface;
 mod c_library;
 mod c_stack;
 mod checks;
+mod crazyflie;
 mod documents;
 mod firmware;
 mod fuzz;

@@ -1,0 +1,1 @@
+#include "stub.h" // A stub: not the firmware.

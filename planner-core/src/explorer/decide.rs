@@ -3,7 +3,7 @@
 use super::Explorer;
 use super::aside::Verdict;
 use super::far::{self, Outcome};
-use super::window::{Aim, Candidate};
+use super::near::{Aim, Candidate};
 use crate::robot::{Stop, Wait};
 use crate::role::Plan;
 use crate::zeroed::Maybe;
@@ -46,16 +46,19 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             hysteresis: self.config.hysteresis,
             lean: (!knows_all).then_some(id),
         };
-        let bonus = self.near.load(&self.around, &mut self.work);
-        if let Some(bonus) = &bonus {
+        let wants_any = self.role.plan.is_none();
+        let (near, work) = (&mut self.near, &mut self.work);
+        let best = near.load(&self.around, work).map(|bonus| {
             let others = self.others.exploring();
             let others = others.flat_map(|other| {
                 let is_lower = other.id < id;
                 other.whereabouts().map(move |cell| (cell, is_lower))
             });
-            let mine = self
-                .near
-                .best(&self.around, &aim, bonus, others, &mut self.work);
+            let own = self.around.position;
+            near.best(own, &aim, &bonus, others, wants_any, work)
+        });
+        if let Some(best) = &best {
+            let mine = near.mine(best, work);
             match mine {
                 Some(candidate) if self.adopt_plan(candidate) => {
                     self.far.cancel();
@@ -74,23 +77,18 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             match plan.map(|plan| (plan.goal, plan.path.is_empty())) {
                 Some((goal, true)) => {
                     self.far_is_doubtful = false;
-                    self.far.start_route(goal);
+                    self.far.start_route(goal, &self.around);
                 }
                 Some(_) if now < self.far_again => {}
                 _ => self.start_sweep(),
             }
         }
-        if let Some(bonus) = &bonus
+        if let Some(best) = &best
             && self.role.plan.is_none()
+            && let Some(candidate) = self.near.any(best, &mut self.work)
         {
-            let others = core::iter::empty();
-            let theirs = self
-                .near
-                .best(&self.around, &aim, bonus, others, &mut self.work);
-            if let Some(candidate) = theirs {
-                self.adopt_plan(candidate);
-                return Near::Theirs;
-            }
+            self.adopt_plan(candidate);
+            return Near::Theirs;
         }
         Near::Nothing
     }

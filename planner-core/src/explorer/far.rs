@@ -2,40 +2,50 @@
 //!
 //! The *sweep* is greedy matching, shortest pair first, computed from last heard
 //! positions: everybody's waves run at once, and whoever meets a frontier that is
-//! not taken is served. Then the *route* runs back from the own frontier until it
-//! meets the robot, wherever that has got to in the meantime.
+//! not taken is served. Robots heard on one cell are a group with one wave: they are
+//! served in turn, by id. When every frontier is spoken for, the pass ends at once.
+//!
+//! Where this robot is served, its wave has left the way: it is turned around, from the
+//! frontier back, and followed from wherever the robot has got to in the meantime. Where
+//! the wave met others, that way may go round them: then a *route* is searched for, by a
+//! wave from the frontier that ends where it meets the robot.
 
 use heapless::Vec;
 
+use super::near::Candidate;
 use super::others::Others;
 use super::patch::connected;
 use super::surroundings::Surroundings;
-use super::wave::{LABELS, Wave};
-use super::window::Candidate;
-use crate::cell::Cell;
+use super::wave::{Event, LABELS, Labels, STEP_WORK, Wave};
+use crate::cell::{Cell, Direction};
 use crate::robot::RobotId;
-use crate::role::Path;
+use crate::role::{self, Path};
 use crate::tile::TileIndex;
 
 /// How often all frontiers are given away anew if there are more robots than
 /// frontiers, before the robot looks for itself alone.
 const PASSES: u8 = 3;
 
-/// What the front of a label in a tile costs, in the unit of work: about as much as a
-/// row of the window.
-const FRONT_WORK: u32 = 4;
+/// Work of checking whether a goal that a wave met still is one.
+const GOAL_WORK: u32 = 1000;
 
-/// What each tile beside it costs that the front moves into.
-const BESIDE_WORK: u32 = 3;
+/// Work of speaking for a frontier.
+const PATCH_WORK: u32 = 4000;
 
-/// What speaking for a frontier costs in the same unit.
-const PATCH_WORK: u32 = 56;
+/// Work of starting a round, or of turning a step of the way around.
+const TURN_WORK: u32 = 60;
 
-/// What following a way back costs at most: its first 256 steps.
-pub(crate) const WAY_WORK: u32 = 128;
+/// Work of following a step of a way.
+const WAY_STEP_WORK: u32 = 60;
 
-/// What the last tile of a slice costs at most, with fronts of every label.
-pub(crate) const LAST_TILE_WORK: u32 = LABELS as u32 * (FRONT_WORK + 4 * BESIDE_WORK);
+/// Work of following a way: its first 256 steps.
+pub(crate) const WAY_WORK: u32 = WAY_STEP_WORK * (role::CAPACITY as u32 + 1);
+
+/// Work after which it is looked whether a route has reached the robot.
+const ROUTE_WORK: u32 = 2000;
+
+/// What the last step of a slice costs at most.
+pub(crate) const LAST_WORK: u32 = STEP_WORK + GOAL_WORK + PATCH_WORK;
 
 /// What the far decision has come to.
 #[derive(Clone, Copy, Debug)]
@@ -57,21 +67,44 @@ enum Stage {
     /// [`PASSES`], from this robot alone.
     Sweep {
         pass: u8,
-        served_before: u16,
+        /// Groups whose waves have begun in this round.
+        seeded: u8,
+        /// Whether anybody was served in this round.
+        has_served: bool,
+    },
+    /// The way to the goal is turned around, so far from there to `cell`.
+    Turn {
+        goal: Cell,
+        cell: Cell,
+        /// Where the way to `cell` comes from.
+        back: Direction,
+        steps: u32,
     },
     Route {
         goal: Cell,
+        is_seeded: bool,
     },
+}
+
+/// Robots that were heard on one cell; the index is the label of their wave.
+#[derive(Clone, Copy, Debug)]
+struct Group {
+    cell: Cell,
+    /// Robots that have no frontier yet.
+    left: u8,
 }
 
 /// The far decision in slices.
 pub(crate) struct FarSearch<const TW: usize, const TH: usize> {
     wave: Wave<TW, TH>,
     stage: Stage,
-    /// Where everybody was when the sweep began, by id; the index is the label.
-    seeds: Vec<(RobotId, Cell), LABELS>,
+    /// Where everybody was when the sweep began.
+    groups: Vec<Group, LABELS>,
+    /// The label of this robot's group, and of a route.
     own_label: u8,
-    /// Labels that have got a frontier.
+    /// Robots of its group that are served before it.
+    before_own: u8,
+    /// Labels of groups that are served.
     served: u16,
 }
 
@@ -80,8 +113,9 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         Self {
             wave: Wave::new(),
             stage: Stage::Idle,
-            seeds: Vec::new(),
+            groups: Vec::new(),
             own_label: 0,
+            before_own: 0,
             served: 0,
         }
     }
@@ -111,74 +145,70 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         others: &Others,
         around: &Surroundings<TW, TH>,
     ) {
-        self.seeds.clear();
-        self.own_label = 0;
-        let others = others
-            .exploring()
-            .map(|other| (other.id, other.position))
-            .filter(|&(_, position)| around.map.is_free(position));
-        let mut own = Some((id, around.position));
-        for (other, position) in others {
-            if other > id
-                && let Some(seed) = own.take()
-            {
-                let _ = self.seeds.push(seed);
-            }
-            if own.is_some() {
-                self.own_label += 1;
-            }
-            let _ = self.seeds.push((other, position));
-        }
-        if let Some(seed) = own {
-            let _ = self.seeds.push(seed);
-        }
+        self.groups.clear();
         self.served = 0;
-        self.wave.forget_taken();
-        let pass = if self.seeds.len() > 1 { 0 } else { PASSES };
-        self.start_round(pass, around.position);
+        self.before_own = 0;
+        let here = around.position;
+        let mut own = Some(here);
+        let others = others.exploring().map(|other| (other.id, other.position));
+        for (other, position) in others {
+            if !around.map.is_free(position) {
+                continue;
+            }
+            if other > id
+                && let Some(here) = own.take()
+            {
+                self.own_label = self.join_group(here);
+            }
+            self.before_own += u8::from(own == Some(position));
+            self.join_group(position);
+        }
+        if let Some(here) = own {
+            self.own_label = self.join_group(here);
+        }
+        let robots: u32 = self.groups.iter().map(|group| u32::from(group.left)).sum();
+        self.start_round(if robots > 1 { 0 } else { PASSES }, false, around);
     }
 
-    fn start_round(&mut self, pass: u8, own: Cell) {
-        self.wave.clear();
-        if pass < PASSES {
-            for (&(_, cell), label) in self.seeds.iter().zip(0u8..) {
-                if self.served >> label & 1 == 0 {
-                    self.wave.seed(cell, label);
-                }
-            }
-        } else {
-            self.wave.seed(own, self.own_label);
+    /// One robot more on this cell; the label of its group.
+    fn join_group(&mut self, cell: Cell) -> u8 {
+        let group = self.groups.iter_mut().zip(0u8..);
+        if let Some((group, label)) = group.into_iter().find(|(group, _)| group.cell == cell) {
+            group.left += 1;
+            return label;
         }
+        let label = self.groups.len() as u8;
+        // There is room: groups are no more than robots.
+        let _ = self.groups.push(Group { cell, left: 1 });
+        label
+    }
+
+    fn start_round(&mut self, pass: u8, keeps_taken: bool, around: &Surroundings<TW, TH>) {
+        if pass >= PASSES
+            && let Some(own) = self.groups.get_mut(usize::from(self.own_label))
+        {
+            self.before_own = 0;
+            own.cell = around.position;
+        }
+        self.wave.begin(around.map.extent(), keeps_taken);
         self.stage = Stage::Sweep {
             pass,
-            served_before: self.served,
+            seeded: 0,
+            has_served: false,
         };
     }
 
-    /// All waves of a round have ended and this robot has no frontier.
-    fn next_round(&mut self, pass: u8, served_before: u16, own: Cell) -> Outcome {
-        if pass >= PASSES {
-            self.stage = Stage::Idle;
-            return Outcome::NothingLeft;
-        }
-        if self.served != served_before {
-            // Somebody made room for the others.
-            self.start_round(pass, own);
-        } else {
-            self.wave.forget_taken();
-            self.start_round(pass + 1, own);
-        }
-        Outcome::Searching
-    }
-
     /// Starts looking for the way to a frontier that is already chosen.
-    pub(crate) fn start_route(&mut self, goal: Cell) {
-        self.wave.clear();
-        self.wave.seed_route(goal);
-        self.stage = Stage::Route { goal };
+    pub(crate) fn start_route(&mut self, goal: Cell, around: &Surroundings<TW, TH>) {
+        self.wave.begin(around.map.extent(), false);
+        self.served = 0;
+        self.stage = Stage::Route {
+            goal,
+            is_seeded: false,
+        };
     }
 
-    /// Goes on with the search for at most `slice` of work, [`LAST_TILE_WORK`], and
+    /// Goes on with the search for at most `slice` of work, [`LAST_WORK`], and
     /// [`WAY_WORK`] where it ends.
     pub(crate) fn advance(
         &mut self,
@@ -186,123 +216,220 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         slice: u32,
         work: &mut u32,
     ) -> Outcome {
-        let end = work.saturating_add(slice);
-        if let Stage::Route { goal } = self.stage
+        let until = work.saturating_add(slice);
+        if let Stage::Route { goal, .. } | Stage::Turn { goal, .. } = self.stage
             && !around.is_goal(goal)
         {
             self.stage = Stage::Idle;
             return Outcome::Lost;
         }
-        while *work < end {
+        while *work < until {
             let outcome = match self.stage {
-                Stage::Idle => return Outcome::Searching,
-                Stage::Sweep {
-                    pass,
-                    served_before,
-                } => self.sweep_tile(pass, served_before, around, work),
-                Stage::Route { goal } => self.route_tile(goal, around, work),
+                Stage::Idle => break,
+                Stage::Turn { .. } => self.turn(around, work),
+                _ if !self.wave.clear(work) => Outcome::Searching,
+                Stage::Sweep { .. } => self.sweep(around, until, work),
+                Stage::Route { .. } => self.route(around, until, work),
             };
             if !matches!(outcome, Outcome::Searching) {
+                self.stage = Stage::Idle;
                 return outcome;
             }
         }
         Outcome::Searching
     }
 
-    /// One tile of a sweep's layer.
-    fn sweep_tile(
-        &mut self,
-        pass: u8,
-        served_before: u16,
-        around: &Surroundings<TW, TH>,
-        work: &mut u32,
-    ) -> Outcome {
-        let Some((at, mut front)) = self.wave.next_front() else {
-            *work += FRONT_WORK;
-            return self.next_round(pass, served_before, around.position);
+    const fn labels(&self) -> Labels {
+        Labels {
+            own: self.own_label,
+            given_up: self.served,
+        }
+    }
+
+    /// A group's wave begins, or all go on.
+    fn sweep(&mut self, around: &Surroundings<TW, TH>, until: u32, work: &mut u32) -> Outcome {
+        let labels = self.labels();
+        let Stage::Sweep {
+            pass,
+            seeded,
+            has_served,
+        } = &mut self.stage
+        else {
+            return Outcome::Searching;
         };
-        *work += FRONT_WORK * u32::from(front == 0);
-        let frontier = around.frontier(at);
-        while front != 0 {
-            *work += FRONT_WORK;
-            let (label, cells, rest) = self.wave.first_label(at, front);
-            front = rest;
-            if self.served >> label & 1 == 1 {
-                continue;
-            }
-            let mine = label == self.own_label;
-            let mut hits = cells & frontier;
-            if hits != 0 {
-                hits &= !self.wave.taken(at);
-            }
-            if mine && hits != 0 {
-                hits &= !around.aside.cells(at);
-            }
-            if hits == 0 {
-                let served = self.served;
-                *work += BESIDE_WORK
-                    * self.wave.spread(at, cells, label, served, |tile| {
-                        if mine {
-                            around.open(tile)
-                        } else {
-                            around.free(tile)
-                        }
-                    });
-                continue;
-            }
-            let goal = at.cell(hits.trailing_zeros());
-            if mine {
-                self.start_route(goal);
+        let (pass, has_served) = (*pass, *has_served);
+        let event = if let Some(group) = self.groups.get(usize::from(*seeded)) {
+            let label = *seeded;
+            *seeded += 1;
+            if group.left == 0 || pass >= PASSES && label != self.own_label {
                 return Outcome::Searching;
             }
-            self.served |= 1 << label;
-            self.speak_for(goal, around, work);
+            self.wave.seed(group.cell, label, labels, around, work)
+        } else {
+            self.wave.run(labels, around, until, work)
+        };
+        match event {
+            Event::Nothing => {}
+            Event::Goal { label, cell } => self.serve(label, cell, pass, around, work),
+            Event::End if pass >= PASSES => return Outcome::NothingLeft,
+            // Somebody made room for the others.
+            Event::End if has_served => self.start_round(pass, true, around),
+            Event::End => self.start_round(pass + 1, false, around),
         }
         Outcome::Searching
     }
 
-    /// A served robot takes its frontier cell and those connected to it nearby:
-    /// it will see what lies behind them.
-    fn speak_for(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) {
+    /// The wave of a group has reached a goal: the next of the group is served. It takes
+    /// this frontier cell and those connected to it nearby: it will see what lies behind
+    /// them.
+    fn serve(
+        &mut self,
+        label: u8,
+        goal: Cell,
+        pass: u8,
+        around: &Surroundings<TW, TH>,
+        work: &mut u32,
+    ) {
+        *work += GOAL_WORK;
+        let is_own = label == self.own_label;
+        let is_goal = if is_own {
+            around.is_goal(goal)
+        } else {
+            TileIndex::of(goal).is_some_and(|(at, bit)| around.frontier(at) & bit != 0)
+        };
+        // Something was learnt since the wave read the map.
+        if !is_goal {
+            return;
+        }
+        if is_own && self.before_own == 0 {
+            return self.start_turn(goal, around);
+        }
+        self.before_own -= u8::from(is_own);
+        if let Some(group) = self.groups.get_mut(usize::from(label)) {
+            group.left = group.left.saturating_sub(1);
+            self.served |= u16::from(group.left == 0) << (label & 15);
+        }
         *work += PATCH_WORK;
         for (at, cells) in connected(goal, |at| around.frontier(at)) {
             self.wave.take(at, cells);
         }
-    }
-
-    /// One tile of a route's layer.
-    fn route_tile(&mut self, goal: Cell, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
-        *work += FRONT_WORK;
-        // The robot may have walked into the wave, or the wave reached the robot.
-        if self.wave.is_reached(around.position) {
-            self.stage = Stage::Idle;
-            return Outcome::Found(self.way(goal, around.position, work));
+        // With every frontier spoken for, nobody else is served in this pass.
+        if around.visits.is_empty() && self.wave.taken() >= around.map.frontiers() {
+            self.start_round(pass + 1, false, around);
+        } else if let Stage::Sweep { has_served, .. } = &mut self.stage {
+            *has_served = true;
         }
-        let Some((at, front)) = self.wave.next_front() else {
-            self.stage = Stage::Idle;
-            return Outcome::Lost;
-        };
-        *work += BESIDE_WORK * self.wave.spread_route(at, front, |tile| around.open(tile));
-        Outcome::Searching
     }
 
-    /// The way from the robot to the goal: as many steps as a path holds, and the
-    /// length of all, exact if it fits a path, else not less than it is.
-    fn way(&self, goal: Cell, own: Cell, work: &mut u32) -> Candidate {
-        *work += WAY_WORK;
+    /// The way of the wave is the robot's shortest if it still stands where that began, and
+    /// if no other wave was in the way or it goes straight.
+    fn start_turn(&mut self, goal: Cell, around: &Surroundings<TW, TH>) {
+        let here = around.position;
+        let start = self.groups.get(usize::from(self.own_label));
+        let is_there = start.is_some_and(|start| start.cell == here);
+        let straight = u32::from(here.x.abs_diff(goal.x)) + u32::from(here.y.abs_diff(goal.y));
+        if !is_there || self.wave.has_met() && self.wave.layer() > straight {
+            return self.start_route(goal, around);
+        }
+        match self.wave.direction_at(goal, self.own_label) {
+            Some(back) => {
+                self.stage = Stage::Turn {
+                    goal,
+                    cell: goal,
+                    back,
+                    steps: 0,
+                };
+            }
+            _ => self.start_route(goal, around),
+        }
+    }
+
+    /// Turns one step of the way around, or follows it if all are.
+    fn turn(&mut self, around: &Surroundings<TW, TH>, work: &mut u32) -> Outcome {
+        let Stage::Turn {
+            goal,
+            cell,
+            back,
+            steps,
+        } = &mut self.stage
+        else {
+            return Outcome::Searching;
+        };
+        let start = self.groups.get(usize::from(self.own_label));
+        if start.is_some_and(|start| start.cell != *cell) {
+            *work += TURN_WORK;
+            *cell = cell.step(*back);
+            let Some(next) = self.wave.direction_at(*cell, self.own_label) else {
+                // Never: all of the way is of its own wave.
+                return Outcome::Lost;
+            };
+            self.wave.turn(*cell, back.opposite());
+            *back = next;
+            *steps += 1;
+            return Outcome::Searching;
+        }
+        let (goal, steps) = (*goal, *steps);
+        let is_at_start = start.is_some_and(|start| start.cell == around.position);
+        // The robot has gone no farther from the start than its wave.
+        let most = if is_at_start {
+            steps
+        } else {
+            2 * self.wave.layer()
+        };
+        match self.way(goal, around.position, most, work) {
+            Some(way) => Outcome::Found(way),
+            None => {
+                self.start_route(goal, around);
+                Outcome::Searching
+            }
+        }
+    }
+
+    /// The wave of a route begins, or goes on.
+    fn route(&mut self, around: &Surroundings<TW, TH>, until: u32, work: &mut u32) -> Outcome {
+        let labels = self.labels();
+        let Stage::Route { goal, is_seeded } = &mut self.stage else {
+            return Outcome::Searching;
+        };
+        let goal = *goal;
+        let event = if *is_seeded {
+            // The robot may have walked into the wave, or the wave reached the robot.
+            if let Some(way) = self.way(goal, around.position, self.wave.layer(), work) {
+                return Outcome::Found(way);
+            }
+            let until = until.min(work.saturating_add(ROUTE_WORK));
+            self.wave.run(labels, around, until, work)
+        } else {
+            *is_seeded = true;
+            self.wave.seed(goal, labels.own, labels, around, work)
+        };
+        match event {
+            Event::End => Outcome::Lost,
+            _ => Outcome::Searching,
+        }
+    }
+
+    /// The way from the robot to the goal, if its wave leads there: as many steps as a
+    /// path holds, and the length of all, exact if it fits a path, else `most`.
+    fn way(&self, goal: Cell, own: Cell, most: u32, work: &mut u32) -> Option<Candidate> {
+        self.wave.direction_at(own, self.own_label)?;
         let mut path = Path::new();
         let mut cell = own;
         while cell != goal {
-            match self.wave.direction_at(cell) {
+            match self.wave.direction_at(cell, self.own_label) {
                 Some(step) if path.push_back(step) => cell = cell.step(step),
                 _ => break,
             }
         }
+        *work += WAY_STEP_WORK * (path.len() + 1);
         let length = if cell == goal {
             path.len()
         } else {
-            (self.wave.layer() + 1).max(path.len())
+            most.max(path.len())
         };
-        Candidate { goal, length, path }
+        Some(Candidate { goal, length, path })
     }
 }
+
+#[cfg(test)]
+mod tests;

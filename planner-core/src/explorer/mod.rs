@@ -1,7 +1,7 @@
 //! The complete explorer: bounded work per tick, no matter how large the map is
 //! and how many robots there are.
 //!
-//! Near decisions (`window`) choose among the frontiers around the robot; where
+//! Near decisions (`near`) choose among the frontiers around the robot; where
 //! it has none of its own there, a search over the whole map (`far`) runs in
 //! the background, with what the near decision leaves of the tick's slice, while the
 //! robot keeps walking. What makes it complete is the *commitment* rule: since the robot
@@ -52,10 +52,12 @@
 //! - *It finds none of its own*: the plan at hand, another's frontier or none is kept, and
 //!   the far search goes on, or begins where none is under way.
 //! - *The far search* does a quarter of a slice at least in every tick without a new
-//!   plan, and has a number of slices that the map bounds: each of its rounds visits each
-//!   tile once for each layer and label at most, each but the last of a pass serves a
-//!   robot, there are a few passes, then a wave of the robot's own, then a route. Its
-//!   end is one of these:
+//!   plan, and has a number of slices that the map bounds: each of its rounds forgets every
+//!   cell, then reaches each at most once for each label (what the queue had no room for is
+//!   found by looking at all cells again, and only after at least one more was reached);
+//!   each round but the last of a pass serves a robot, and there are a few passes. Then a
+//!   wave of the robot's own runs, then each step of a way is turned around once, or a
+//!   route is searched for, which reaches each cell once. Its end is one of these:
 //!   - *A way was found*: as with the near decision. The rest of the way at hand is
 //!     always taken: only for a plan of before the spell, or before a cell was set aside,
 //!     can it be longer than what was left.
@@ -110,9 +112,11 @@ mod evidence;
 mod far;
 mod lean;
 mod looking;
+mod near;
 mod others;
 mod patch;
 mod purse;
+mod queue;
 mod stopping;
 mod surroundings;
 mod wave;
@@ -126,9 +130,9 @@ use aside::Aside;
 use decide::Near;
 use evidence::Evidence;
 use far::{FarSearch, Outcome};
+use near::NearSearch;
 use others::Others;
 use surroundings::Surroundings;
-use window::NearSearch;
 
 use heapless::Vec;
 
@@ -147,9 +151,8 @@ use crate::zeroed::Maybe;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Work a tick. The near decision takes of it what it needs, the far search gets
-    /// the rest, and a quarter at least. 4096 instead of 2304 saves about 1 % of the
-    /// ticks of an exploration, and its longest ticks take nearly twice the time.
+    /// Work a tick, in instructions of a Cortex-M4F. The near decision takes of it what it
+    /// needs, the far search gets the rest, and a quarter at least.
     pub slice: u32,
     /// Steps after which the robot decides again.
     pub d_max: u8,
@@ -186,7 +189,7 @@ impl Config {
     /// The configuration that is shipped.
     pub const fn new() -> Self {
         Self {
-            slice: 2304,
+            slice: 240_000,
             d_max: 2,
             tokens: 2,
             hysteresis: 3,
@@ -202,9 +205,8 @@ impl Config {
         }
     }
 
-    /// No [`Planner::tick`] counts more work than this. The unit is a row of the near
-    /// decision's window; whatever else is counted is weighed so that a unit takes about
-    /// as long on a chip, near 105 instructions of a Cortex-M4.
+    /// No [`Planner::tick`] counts more work than this, in instructions of a Cortex-M4F. What
+    /// is counted is weighed so that no tick takes a tenth more.
     pub const fn work_bound(&self) -> u32 {
         let with_least = NearSearch::LARGEST_WORK + self.least_far() + far::WAY_WORK;
         let most = if self.slice > with_least {
@@ -212,7 +214,7 @@ impl Config {
         } else {
             with_least
         };
-        most.saturating_add(far::LAST_TILE_WORK)
+        TICK_WORK + most.saturating_add(far::LAST_WORK)
     }
 
     /// What the far search gets of a tick in any case.
@@ -220,6 +222,9 @@ impl Config {
         self.slice / 4 + 1
     }
 }
+
+/// Work of a tick that decides nothing.
+const TICK_WORK: u32 = 1500;
 
 /// So many cells that are told to be walls at once and were free are no error of a look.
 const MANY_SHUT: u32 = 4;
@@ -479,7 +484,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
         self.evidence.tick();
-        self.work = 0;
+        self.work = TICK_WORK;
         self.stepping = false;
         self.waiting = Maybe::Nothing;
         self.role.has_arrived = false;

@@ -1,13 +1,18 @@
-//! Waves over the tiles of the whole map, layer by layer, in slices: no queue of
-//! cells, 68 bytes a tile.
+//! Waves over the cells of the whole map, a byte a cell, in slices.
 //!
-//! A wave is either the *sweep*, in which several robots' waves run at once and
-//! each cell carries the label of the robot that reached it, or a *route*, in
-//! which each cell carries the direction back to where the wave started.
+//! Several waves run at once, each with a label, a step a layer: what they reach next
+//! stands in a queue, first in, first out. Each cell that a wave reaches carries its label
+//! and the direction back to where the wave began.
+//!
+//! The queue holds three cells a tile. What does not fit is found again when the queue is
+//! empty, by looking at all cells: the waves then reach the same cells, but not by the
+//! shortest ways.
 
 use super::others::MAX_OTHERS;
-use crate::cell::{Cell, Direction};
-use crate::tile::{TileIndex, TileSet, Tiles, carried, shifted};
+use super::queue::{PER_TILE, Places, Queue};
+use super::surroundings::Surroundings;
+use crate::cell::{Cell, Direction, Extent};
+use crate::tile::{TILE, TileIndex, bits};
 
 /// Waves that can run at once: the robot's own and one for each other.
 pub(crate) const LABELS: usize = 16;
@@ -20,327 +25,522 @@ const _: () = assert!(
     "each robot that is remembered, and the robot itself, needs a label"
 );
 
-/// The layers of one tile.
-#[derive(Clone, Copy)]
-struct WaveTile {
-    /// Cells that belong to a wave.
-    reached: u64,
-    /// Cells reached in the last layer and in this one, by the layer's parity.
-    front: [u64; 2],
-    /// Frontier cells that are spoken for.
-    taken: u64,
-    /// Sweep: the label's four bits. Route: the direction's two bits.
-    mark: [u64; 4],
+/// Work of taking a cell out of the queue and looking at its neighbours, in instructions.
+const VISIT_WORK: u32 = 200;
+/// Work of reading a tile of the map.
+const LOAD_WORK: u32 = 1600;
+/// Work of forgetting [`CHUNK`] cells.
+const CHUNK_WORK: u32 = 660;
+/// Work of looking at [`SOME`] cells for those that the queue lost.
+const SOME_WORK: u32 = 1000;
+
+/// What a step of a wave costs at most: a cell with four neighbours in tiles that were not
+/// read yet; or a chunk.
+pub(crate) const STEP_WORK: u32 = VISIT_WORK + 4 * LOAD_WORK;
+
+/// Cells that are forgotten at a time.
+const CHUNK: usize = 256;
+/// Cells that are looked at for lost ones at a time.
+const SOME: usize = 32;
+
+/// What is known of a cell: a byte, with these bits.
+mod cell {
+    /// A frontier cell that is spoken for.
+    pub(super) const TAKEN: u8 = 1 << 6;
+    /// A wave has reached the cell. Then it has the label in bits 0 to 3 and the direction
+    /// back in bits 4 and 5; otherwise the bits below.
+    pub(super) const REACHED: u8 = 1 << 7;
+    pub(super) const BACK: u32 = 4;
+    pub(super) const LABEL: u8 = 0xf;
+
+    /// The map was read. Without this bit and [`REACHED`], nothing is known.
+    pub(super) const READ: u8 = 1 << 4;
+    /// Waves of others may enter; one bit higher: the robot's own may.
+    pub(super) const FREE: u8 = 1;
+    /// A goal of others; one bit higher: one of the robot's own.
+    pub(super) const GOAL: u8 = 1 << 2;
 }
 
-/// Up to when a tile is current.
+/// Eight cells of a row as bytes, from bits: each byte is 0 or 1.
+fn spread(row: u64) -> u64 {
+    let nibble = |bits: u64| u64::from((bits as u32 & 0xf) * 0x0020_4081 & 0x0101_0101);
+    nibble(row) | nibble(row >> 4) << 32
+}
+
+/// Whose waves run.
 #[derive(Clone, Copy)]
-struct Stamp {
-    /// The wave that everything in the tile is of, but `taken`; 0: of none.
-    round: u16,
-    /// The labels whose cells have been given up in this tile, a bit a label.
+pub(crate) struct Labels {
+    pub(crate) own: u8,
+    /// Those whose cells belong to nobody any more, a bit a label.
+    pub(crate) given_up: u16,
+}
+
+impl Labels {
+    const fn has_given_up(self, label: u8) -> bool {
+        self.given_up >> (label & cell::LABEL) & 1 == 1
+    }
+}
+
+/// What has come of running.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Event {
+    /// Nothing yet.
+    Nothing,
+    /// The wave `label` has reached a goal that nobody has spoken for.
+    Goal { label: u8, cell: Cell },
+    /// No wave reaches any more.
+    End,
+}
+
+/// Why the innermost loop ends.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pause {
+    /// So many cells were asked for.
+    Enough,
+    /// The queue is empty.
+    Empty,
+    /// A goal was reached.
+    Goal(usize),
+    /// The map was not read there.
+    Unread(usize),
+    /// Another wave gave the cell up. Can the robot enter?
+    GivenUp(usize),
+}
+
+/// A wave's step from one cell.
+#[derive(Clone, Copy)]
+struct Step {
+    /// What tells that the wave may enter, and that it reaches a goal.
+    free: u8,
+    goal: u8,
+    /// What the cells get.
+    mark: u8,
+    /// The labels that gave up.
     given_up: u16,
+    is_own: bool,
 }
 
-impl Stamp {
-    const NONE: Self = Self {
-        round: 0,
-        given_up: 0,
-    };
-}
-
-/// All cells or none.
-const fn all_if(condition: bool) -> u64 {
-    (condition as u64).wrapping_neg()
-}
-
-impl WaveTile {
-    const EMPTY: Self = Self {
-        reached: 0,
-        front: [0; 2],
-        taken: 0,
-        mark: [0; 4],
-    };
-
-    /// The cells that carry this label.
-    fn labelled(&self, label: u8) -> u64 {
-        let [a, b, c, d] = self.mark;
-        (a ^ all_if(label & 1 == 0))
-            & (b ^ all_if(label & 2 == 0))
-            & (c ^ all_if(label & 4 == 0))
-            & (d ^ all_if(label & 8 == 0))
-    }
-
-    /// The number that the marks of a cell spell.
-    fn mark_of(&self, bit: u64) -> u8 {
-        let [a, b, c, d] = self.mark.map(|plane| u8::from(plane & bit != 0));
-        a | b << 1 | c << 2 | d << 3
-    }
-
-    /// What the robots in `labels` (a bit a label) had reached belongs to nobody any more.
-    fn give_up(&mut self, mut labels: u16) {
-        while labels != 0 {
-            self.reached &= !self.labelled(labels.trailing_zeros() as u8);
-            labels &= labels - 1;
-        }
-        for plane in self.mark.iter_mut().chain(&mut self.front) {
-            *plane &= self.reached;
-        }
-    }
-
-    /// Adds `cells`, which nobody has, to the layer after the one of this parity.
+impl Step {
+    /// Enters a cell in direction number `direction`, if it can.
     #[inline(always)] // in the innermost loop
-    fn advance(&mut self, cells: u64, mut number: u8, parity: usize) {
-        self.reached |= cells;
-        let [even, odd] = &mut self.front;
-        *(if parity == 0 { odd } else { even }) |= cells;
-        for plane in &mut self.mark {
-            if number == 0 {
-                break;
+    fn enter(
+        self,
+        bytes: &mut [u8],
+        places: &mut Places<'_>,
+        queue: &mut Queue,
+        number: usize,
+        direction: u8,
+        has_lost: &mut bool,
+        meets: &mut bool,
+    ) -> Option<Pause> {
+        let place = bytes.get_mut(number)?;
+        let mut byte = *place;
+        if byte & (cell::REACHED | self.free) != self.free {
+            if byte & cell::REACHED == 0 {
+                let is_read = byte & cell::READ != 0;
+                return (!is_read).then_some(Pause::Unread(number));
             }
-            if number & 1 == 1 {
-                *plane |= cells;
+            if self.given_up >> (byte & cell::LABEL) & 1 == 0 {
+                *meets |= self.is_own && byte & cell::LABEL != self.mark & cell::LABEL;
+                return None;
             }
-            number >>= 1;
+            if self.is_own {
+                return Some(Pause::GivenUp(number));
+            }
+            byte &= cell::TAKEN;
         }
+        *place = byte & cell::TAKEN | (direction ^ 2) << cell::BACK | self.mark;
+        if !queue.push(places, number) {
+            *has_lost = true;
+        }
+        let is_goal = byte & (cell::TAKEN | self.goal) == self.goal;
+        is_goal.then_some(Pause::Goal(number))
     }
 }
 
-/// The state of a wave over a map of `TW`×`TH` tiles.
+/// The state of waves over a map of `TW`×`TH` tiles: 70 bytes a tile.
 pub(crate) struct Wave<const TW: usize, const TH: usize> {
-    tiles: Tiles<WaveTile, TW, TH>,
-    stamps: Tiles<Stamp, TW, TH>,
-    /// The number of this wave: tiles of earlier ones count as empty.
-    round: u16,
-    /// The tiles with frontier cells that are spoken for.
-    spoken: TileSet<TH>,
-    /// Tiles with a front, by the layer's parity.
-    active: [TileSet<TH>; 2],
+    /// Eight cells of a row in each of eight rows of tiles: together row by row.
+    cells: [[[[u8; TILE]; TW]; TILE]; TH],
+    places: [[[u16; PER_TILE]; TW]; TH],
+    queue: Queue,
+    /// Cells that count: those of the rows that the map has.
+    end: u32,
+    /// Cells forgotten so far, up to `end`, and what is kept of each.
+    cleared: u32,
+    kept: u8,
+    /// The cell whose neighbours are being looked at, and the number of the direction of
+    /// the next one; 4: none is left.
+    from: u32,
+    next: u8,
+    /// Whether the queue had no room for a cell since all were last looked at.
+    has_lost: bool,
+    /// Whether the robot's own wave has met another.
+    has_met: bool,
+    /// Cells looked at for those that were lost, up to `end`.
+    searched: u32,
+    /// Steps that the waves have made at most, and the place behind the last of this layer.
     layer: u32,
+    layer_end: u32,
+    /// Frontier cells that are spoken for.
+    taken: u32,
 }
 
 impl<const TW: usize, const TH: usize> Wave<TW, TH> {
+    /// Cells of a row.
+    const STRIDE: usize = TW * TILE;
+    /// Whether a number has more than 16 bits.
+    const IS_LARGE: bool = TW * TH * TILE * TILE > 1 << 16;
+
     pub(crate) const fn new() -> Self {
         Self {
-            tiles: Tiles::all(WaveTile::EMPTY),
-            stamps: Tiles::all(Stamp::NONE),
-            round: 0,
-            spoken: TileSet::new(),
-            active: [TileSet::new(); 2],
+            cells: [[[[0; TILE]; TW]; TILE]; TH],
+            places: [[[0; PER_TILE]; TW]; TH],
+            queue: Queue::EMPTY,
+            end: 0,
+            cleared: 0,
+            kept: 0,
+            from: 0,
+            next: 0,
+            has_lost: false,
+            has_met: false,
+            searched: 0,
             layer: 0,
+            layer_end: 0,
+            taken: 0,
         }
     }
 
-    /// Forgets all waves, but not who is spoken for. Work: the rows with a front.
-    pub(crate) fn clear(&mut self) {
-        self.round = self.round.checked_add(1).unwrap_or(1);
-        // One stamp in turn is wiped, so none gets so old that its number comes again.
-        let turn = usize::from(self.round).checked_rem(TW * TH);
-        if let Some(turn) = turn
-            && let Some(stamp) = self.stamps.values_mut().nth(turn)
-        {
-            *stamp = Stamp::NONE;
+    fn bytes(&self) -> &[u8] {
+        self.cells.as_flattened().as_flattened().as_flattened()
+    }
+
+    fn bytes_mut(&mut self) -> &mut [u8] {
+        let rows = self.cells.as_flattened_mut().as_flattened_mut();
+        rows.as_flattened_mut()
+    }
+
+    fn byte(&self, number: usize) -> u8 {
+        self.bytes().get(number).copied().unwrap_or(0)
+    }
+
+    fn push(&mut self, number: usize) -> bool {
+        let mut places = Places {
+            halves: self.places.as_flattened_mut().as_flattened_mut(),
+            is_large: Self::IS_LARGE,
+        };
+        self.queue.push(&mut places, number)
+    }
+
+    fn number(cell: Cell) -> Option<usize> {
+        let x = usize::try_from(cell.x).ok().filter(|x| *x < Self::STRIDE)?;
+        Some(usize::try_from(cell.y).ok()? * Self::STRIDE + x)
+    }
+
+    const fn cell(number: usize) -> Cell {
+        Cell::new(
+            (number % Self::STRIDE) as i16,
+            (number / Self::STRIDE) as i16,
+        )
+    }
+
+    /// Forgets all waves and, unless it is kept, who is spoken for; but it is
+    /// [`clear`](Self::clear) that does it.
+    pub(crate) fn begin(&mut self, extent: Extent, keeps_taken: bool) {
+        let rows = usize::from(extent.height).min(TH * TILE);
+        self.end = (rows * Self::STRIDE) as u32;
+        self.cleared = 0;
+        self.kept = if keeps_taken { cell::TAKEN } else { 0 };
+        if !keeps_taken {
+            self.taken = 0;
         }
-        for active in &mut self.active {
-            active.clear();
-        }
+        self.queue = Queue::EMPTY;
+        self.next = 4;
+        self.has_lost = false;
+        self.has_met = false;
+        self.searched = self.end;
         self.layer = 0;
+        self.layer_end = 0;
     }
 
-    /// Nobody has spoken for any frontier cell.
-    pub(crate) fn forget_taken(&mut self) {
-        self.spoken.clear();
+    /// Forgets a chunk of the cells; says whether all are forgotten. Only then waves can
+    /// be seeded.
+    pub(crate) fn clear(&mut self, work: &mut u32) -> bool {
+        if self.cleared >= self.end {
+            return true;
+        }
+        *work += CHUNK_WORK;
+        let (first, kept) = (self.cleared as usize, u32::from_ne_bytes([self.kept; 4]));
+        let (words, _) = self.bytes_mut().as_chunks_mut();
+        for word in words.iter_mut().skip(first / 4).take(CHUNK / 4) {
+            *word = (u32::from_ne_bytes(*word) & kept).to_ne_bytes();
+        }
+        self.cleared += CHUNK as u32;
+        false
     }
 
-    /// Steps that the wave has made: the distance of the cells of its front.
+    /// Starts the wave `label` in a cell. The goal that this cell is, if any.
+    pub(crate) fn seed(
+        &mut self,
+        cell: Cell,
+        label: u8,
+        labels: Labels,
+        around: &Surroundings<TW, TH>,
+        work: &mut u32,
+    ) -> Event {
+        *work += VISIT_WORK;
+        let Some(number) = Self::number(cell) else {
+            return Event::Nothing;
+        };
+        if self.byte(number) & !cell::TAKEN == 0 {
+            *work += LOAD_WORK;
+            self.read(number, around);
+        }
+        let byte = self.byte(number);
+        let goal = cell::GOAL << u8::from(label == labels.own);
+        if let Some(place) = self.bytes_mut().get_mut(number) {
+            *place = byte & cell::TAKEN | cell::REACHED | label;
+        }
+        self.has_lost |= !self.push(number);
+        if byte & (cell::REACHED | cell::TAKEN | goal) == goal {
+            Event::Goal { label, cell }
+        } else {
+            Event::Nothing
+        }
+    }
+
+    /// Lets the waves run on until something comes of it, or the work is not less than
+    /// `until`.
+    pub(crate) fn run(
+        &mut self,
+        labels: Labels,
+        around: &Surroundings<TW, TH>,
+        until: u32,
+        work: &mut u32,
+    ) -> Event {
+        while *work < until {
+            let cells = (until - *work).div_ceil(VISIT_WORK);
+            let (pause, left) = self.run_through(labels, cells);
+            *work += (cells - left) * VISIT_WORK;
+            match pause {
+                Pause::Enough => {}
+                Pause::Goal(number) => {
+                    return Event::Goal {
+                        label: self.byte(number) & cell::LABEL,
+                        cell: Self::cell(number),
+                    };
+                }
+                Pause::Unread(number) => {
+                    *work += LOAD_WORK;
+                    self.read(number, around);
+                }
+                Pause::GivenUp(number) => {
+                    *work += VISIT_WORK;
+                    let cell = Self::cell(number);
+                    if !around.is_open(cell) {
+                        self.next += 1;
+                    } else if let Some(byte) = self.bytes_mut().get_mut(number) {
+                        *byte = *byte & cell::TAKEN | cell::READ | cell::FREE | cell::FREE << 1;
+                    }
+                }
+                Pause::Empty => {
+                    *work += SOME_WORK;
+                    if !self.find_lost(labels) {
+                        return Event::End;
+                    }
+                }
+            }
+        }
+        Event::Nothing
+    }
+
+    /// Takes so many cells out of the queue, or less; why, and how many were left.
+    #[inline(never)]
+    fn run_through(&mut self, labels: Labels, cells: u32) -> (Pause, u32) {
+        let mut places = Places {
+            halves: self.places.as_flattened_mut().as_flattened_mut(),
+            is_large: Self::IS_LARGE,
+        };
+        let rows = self.cells.as_flattened_mut().as_flattened_mut();
+        let bytes = rows.as_flattened_mut();
+        let (mut queue, mut layer_end) = (self.queue, self.layer_end);
+        let (mut from, mut next) = (self.from as usize, self.next);
+        let (mut has_lost, mut has_met) = (false, false);
+        let mut left = cells;
+        let pause = loop {
+            if next > 3 {
+                if left == 0 {
+                    break Pause::Enough;
+                }
+                if queue.first == layer_end {
+                    self.layer += 1;
+                    layer_end = queue.end;
+                }
+                let Some(first) = queue.pop(&places) else {
+                    break Pause::Empty;
+                };
+                left -= 1;
+                from = first;
+                next = 0;
+            }
+            let label = bytes.get(from).copied().unwrap_or(0) & cell::LABEL;
+            if labels.has_given_up(label) {
+                next = 4;
+                continue;
+            }
+            let own = u8::from(label == labels.own);
+            let step = Step {
+                free: cell::FREE << own,
+                goal: cell::GOAL << own,
+                mark: cell::REACHED | label,
+                given_up: labels.given_up,
+                is_own: own == 1,
+            };
+            // Past the last column and the first there is nothing.
+            let is_last = from % TILE == TILE - 1 && (from + 1).is_multiple_of(Self::STRIDE);
+            let is_first = from % TILE == 0 && from.is_multiple_of(Self::STRIDE);
+            // Written out four times: a loop takes a third longer.
+            macro_rules! enter {
+                ($direction:literal, $number:expr) => {
+                    if next <= $direction {
+                        next = $direction;
+                        let (places, queue) = (&mut places, &mut queue);
+                        let (lost, meets) = (&mut has_lost, &mut has_met);
+                        match step.enter(bytes, places, queue, $number, $direction, lost, meets) {
+                            None => {}
+                            Some(Pause::Goal(number)) => {
+                                next += 1;
+                                break Pause::Goal(number);
+                            }
+                            Some(pause) => break pause,
+                        }
+                    }
+                };
+            }
+            enter!(0, if is_last { usize::MAX } else { from + 1 });
+            enter!(1, from + Self::STRIDE);
+            enter!(
+                2,
+                if is_first {
+                    usize::MAX
+                } else {
+                    from.wrapping_sub(1)
+                }
+            );
+            enter!(3, from.wrapping_sub(Self::STRIDE));
+            next = 4;
+        };
+        self.queue = queue;
+        self.layer_end = layer_end;
+        self.from = from as u32;
+        self.next = next;
+        self.has_lost |= has_lost;
+        self.has_met |= has_met;
+        (pause, left)
+    }
+
+    /// Reads the tile of a cell from the map.
+    #[inline(never)] // once a tile
+    fn read(&mut self, number: usize, around: &Surroundings<TW, TH>) {
+        let Cell { x, y } = Self::cell(number);
+        let (column, row) = ((x >> 3) as u8, (y >> 3) as u8);
+        let at = TileIndex::new(column, row);
+        let (free, frontier) = (around.free(at), around.frontier(at));
+        let (open, goals) = (around.open(at), frontier & !around.aside.cells(at));
+        let Some(rows) = self.cells.get_mut(usize::from(row)) else {
+            return;
+        };
+        const READ: u64 = u64::from_ne_bytes([cell::READ; TILE]);
+        const TAKEN: u64 = u64::from_ne_bytes([cell::TAKEN; TILE]);
+        for (tiles, y) in rows.iter_mut().zip(0u32..) {
+            let Some(bytes) = tiles.get_mut(usize::from(column)) else {
+                return;
+            };
+            let row = |layer: u64| spread(layer >> (8 * y));
+            let read = READ
+                | row(free) * u64::from(cell::FREE)
+                | row(open) * u64::from(cell::FREE << 1)
+                | row(frontier) * u64::from(cell::GOAL)
+                | row(goals) * u64::from(cell::GOAL << 1);
+            let taken = u64::from_le_bytes(*bytes) & TAKEN;
+            *bytes = (taken | read).to_le_bytes();
+        }
+    }
+
+    /// The queue is empty: puts cells into it whose neighbours may not have been looked at,
+    /// if any was lost. False if none was.
+    #[cold]
+    fn find_lost(&mut self, labels: Labels) -> bool {
+        if self.searched >= self.end {
+            if !self.has_lost {
+                return false;
+            }
+            self.has_lost = false;
+            self.searched = 0;
+        }
+        let first = self.searched as usize;
+        for number in first..first + SOME {
+            let byte = self.byte(number);
+            let is_reached = byte & cell::REACHED != 0 && !labels.has_given_up(byte);
+            if is_reached && !self.push(number) {
+                break;
+            }
+            self.searched += 1;
+        }
+        true
+    }
+
+    /// Steps that the waves have made at most: the distance of what they reach next.
     pub(crate) const fn layer(&self) -> u32 {
         self.layer
     }
 
-    const fn parity(&self) -> usize {
-        (self.layer & 1) as usize
+    /// Whether the robot's own wave has met another: its ways may go round.
+    pub(crate) const fn has_met(&self) -> bool {
+        self.has_met
     }
 
-    fn active_now(&mut self) -> &mut TileSet<TH> {
-        let [even, odd] = &mut self.active;
-        if self.layer & 1 == 0 { even } else { odd }
-    }
-
-    fn active_next(&mut self) -> &mut TileSet<TH> {
-        let [even, odd] = &mut self.active;
-        if self.layer & 1 == 0 { odd } else { even }
-    }
-
-    /// The tile, if this wave has been there.
-    fn tile(&self, at: TileIndex) -> Option<&WaveTile> {
-        let is_current = self.stamps.get(at)?.round == self.round;
-        if is_current { self.tiles.get(at) } else { None }
-    }
-
-    #[inline(always)] // in the innermost loop
-    fn tile_mut(&mut self, at: TileIndex) -> Option<(&mut WaveTile, &mut Stamp)> {
-        let tile = self.tiles.get_mut(at)?;
-        let stamp = self.stamps.get_mut(at)?;
-        if stamp.round != self.round {
-            *stamp = Stamp {
-                round: self.round,
-                given_up: 0,
-            };
-            *tile = WaveTile {
-                taken: tile.taken,
-                ..WaveTile::EMPTY
-            };
-        }
-        Some((tile, stamp))
-    }
-
-    /// Starts a wave with this label in a cell that none has reached. Only in layer 0.
-    pub(crate) fn seed(&mut self, cell: Cell, label: u8) {
-        if let Some((at, bit)) = TileIndex::of(cell)
-            && let Some((tile, _)) = self.tile_mut(at)
-            && tile.reached & bit == 0
-        {
-            tile.advance(bit, label, 1);
-            self.active[0].insert(at);
-        }
-    }
-
-    /// The cells of a tile that a wave has reached.
+    /// The cells of a tile that a wave has reached. Work: 64 bytes.
     pub(crate) fn reached(&self, at: TileIndex) -> u64 {
-        self.tile(at).map_or(0, |tile| tile.reached)
+        bits(u64::MAX)
+            .filter(|bit| {
+                let number = Self::number(at.cell(*bit));
+                let number = number.filter(|number| *number < self.cleared as usize);
+                let byte = number.and_then(|number| self.bytes().get(number));
+                byte.is_some_and(|byte| byte & cell::REACHED != 0)
+            })
+            .fold(0, |cells, bit| cells | 1 << bit)
     }
 
-    /// Whether a wave has reached the cell.
-    pub(crate) fn is_reached(&self, cell: Cell) -> bool {
-        TileIndex::of(cell)
-            .and_then(|(at, bit)| Some(self.tile(at)?.reached & bit != 0))
-            .unwrap_or(false)
+    /// The direction back to where the wave `label` began, if it has reached the cell.
+    pub(crate) fn direction_at(&self, cell: Cell, label: u8) -> Option<Direction> {
+        let byte = self.bytes().get(Self::number(cell)?)?;
+        let is_its = byte & (cell::REACHED | cell::LABEL) == cell::REACHED | label;
+        is_its.then(|| Direction::from_index(byte >> cell::BACK))
     }
 
-    /// In a route: the direction back to where it started.
-    pub(crate) fn direction_at(&self, cell: Cell) -> Option<Direction> {
-        let (at, bit) = TileIndex::of(cell)?;
-        let tile = self.tile(at)?;
-        (tile.reached & bit != 0).then(|| Direction::from_index(tile.mark_of(bit)))
-    }
-
-    /// The next tile of this layer and its front, which is taken out; at the end
-    /// of a layer, of the next one. `None` when the waves have ended.
-    pub(crate) fn next_front(&mut self) -> Option<(TileIndex, u64)> {
-        if self.active_now().is_empty() {
-            self.layer += 1;
-        }
-        let at = self.active_now().pop_first()?;
-        let parity = self.parity();
-        let tile = self.tiles.get_mut(at)?;
-        let [even, odd] = &mut tile.front;
-        let front = if parity == 0 { even } else { odd };
-        Some((at, core::mem::take(front)))
-    }
-
-    /// Splits the front of a tile by label: the label of its first cell, all cells
-    /// that carry it, and the rest. What was given up meanwhile is left out.
-    pub(crate) fn first_label(&self, at: TileIndex, front: u64) -> (u8, u64, u64) {
-        self.tiles.get(at).map_or((0, 0, 0), |tile| {
-            let front = front & tile.reached;
-            let label = tile.mark_of(front & front.wrapping_neg());
-            let cells = front & tile.labelled(label);
-            (label, cells, front & !cells)
-        })
-    }
-
-    /// The frontier cells of a tile that are spoken for.
-    pub(crate) fn taken(&self, at: TileIndex) -> u64 {
-        match self.tiles.get(at) {
-            Some(tile) if self.spoken.contains(at) => tile.taken,
-            _ => 0,
+    /// Turns the direction at a cell that a wave has reached.
+    pub(crate) fn turn(&mut self, cell: Cell, direction: Direction) {
+        let byte = Self::number(cell).and_then(|number| self.bytes_mut().get_mut(number));
+        if let Some(byte) = byte {
+            *byte = *byte & !(3 << cell::BACK) | (direction as u8) << cell::BACK;
         }
     }
 
-    /// Speaks for frontier cells.
+    /// Speaks for frontier cells of a tile.
     pub(crate) fn take(&mut self, at: TileIndex, cells: u64) {
-        let taken = self.taken(at) | cells;
-        if taken != 0
-            && let Some((tile, _)) = self.tile_mut(at)
-        {
-            tile.taken = taken;
-            self.spoken.insert(at);
-        }
-    }
-
-    /// Sweep: one step of the wave `label` from `cells` of a tile, into `free`
-    /// cells that no wave has reached, or one of a robot in `served` (a bit a label).
-    /// Returns the number of tiles beside that it moves into.
-    pub(crate) fn spread(
-        &mut self,
-        at: TileIndex,
-        cells: u64,
-        label: u8,
-        served: u16,
-        free: impl Fn(TileIndex) -> u64,
-    ) -> u32 {
-        let within = shifted(cells, Direction::East)
-            | shifted(cells, Direction::South)
-            | shifted(cells, Direction::West)
-            | shifted(cells, Direction::North);
-        self.claim(at, within & free(at), label, served);
-        let mut beside = 0;
-        for direction in Direction::ALL {
-            let moved = carried(cells, direction);
-            if moved != 0 {
-                beside += 1;
-                let next = at.beside(direction);
-                self.claim(next, moved & free(next), label, served);
+        let mut new = 0;
+        for number in bits(cells).filter_map(|bit| Self::number(at.cell(bit))) {
+            if let Some(byte) = self.bytes_mut().get_mut(number) {
+                new += u32::from(*byte & cell::TAKEN == 0);
+                *byte |= cell::TAKEN;
             }
         }
-        beside
+        self.taken += new;
     }
 
-    /// Route: one step of the wave from `cells` of a tile into `free` cells that
-    /// it has not reached; each gets the direction back. Returns as [`spread`](Self::spread).
-    pub(crate) fn spread_route(
-        &mut self,
-        at: TileIndex,
-        cells: u64,
-        free: impl Fn(TileIndex) -> u64,
-    ) -> u32 {
-        let here = free(at);
-        let mut beside = 0;
-        for direction in Direction::ALL {
-            let back = direction.opposite() as u8;
-            self.claim(at, shifted(cells, direction) & here, back, 0);
-            let moved = carried(cells, direction);
-            if moved != 0 {
-                beside += 1;
-                let next = at.beside(direction);
-                self.claim(next, moved & free(next), back, 0);
-            }
-        }
-        beside
-    }
-
-    fn claim(&mut self, at: TileIndex, cells: u64, label: u8, served: u16) {
-        if cells == 0 {
-            return;
-        }
-        let parity = self.parity();
-        let Some((tile, stamp)) = self.tile_mut(at) else {
-            return;
-        };
-        let mut open = cells & !tile.reached;
-        if open != cells && served & !stamp.given_up != 0 {
-            tile.give_up(served & !stamp.given_up);
-            stamp.given_up |= served;
-            open = cells & !tile.reached;
-        }
-        if open != 0 {
-            tile.advance(open, label, parity);
-            self.active_next().insert(at);
-        }
-    }
-
-    /// Starts a route at a cell. Only after [`clear`](Self::clear).
-    pub(crate) fn seed_route(&mut self, cell: Cell) {
-        self.seed(cell, 0);
+    /// Frontier cells that are spoken for.
+    pub(crate) const fn taken(&self) -> u32 {
+        self.taken
     }
 }

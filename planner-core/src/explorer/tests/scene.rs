@@ -280,9 +280,9 @@ pub(super) fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
                 proptest::collection::vec(proptest::bool::weighted(share), cells),
                 proptest::collection::vec(0..cells, robots),
                 1u8..=8,
-                // A search of one tile a tick takes hundreds of ticks, and trouble many.
-                prop_oneof![Just(1u32), Just(4), 64u32..2000]
-                    .prop_map(move |slice| if is_troubled { slice.max(64) } else { slice }),
+                // A search of one cell a tick takes hundreds of ticks, and trouble many.
+                prop_oneof![Just(1u32), Just(400), 6_000u32..200_000]
+                    .prop_map(move |slice| if is_troubled { slice.max(6_000) } else { slice }),
                 prop_oneof![Just(8u16), Just(256)],
                 prop_oneof![Just(0u32), Just(1), 2u32..50],
                 disturbance,

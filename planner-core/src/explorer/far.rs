@@ -392,20 +392,18 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             return Outcome::Searching;
         };
         let goal = *goal;
-        let event = if *is_seeded {
-            // The robot may have walked into the wave, or the wave reached the robot.
-            if let Some(way) = self.way(goal, around.position, self.wave.layer(), work) {
-                return Outcome::Found(way);
-            }
-            let until = until.min(work.saturating_add(ROUTE_WORK));
-            self.wave.run(labels, around, until, work)
-        } else {
+        if !*is_seeded {
             *is_seeded = true;
-            self.wave.seed(goal, labels.own, labels, around, work)
-        };
-        match event {
-            Event::End => Outcome::Lost,
-            _ => Outcome::Searching,
+            self.wave.seed(goal, labels.own, labels, around, work);
+            return Outcome::Searching;
+        }
+        let until = until.min(work.saturating_add(ROUTE_WORK));
+        let event = self.wave.run(labels, around, until, work);
+        // The robot may have walked into the wave, or the wave reached the robot.
+        match self.way(goal, around.position, self.wave.layer(), work) {
+            Some(way) => Outcome::Found(way),
+            None if event == Event::End => Outcome::Lost,
+            None => Outcome::Searching,
         }
     }
 

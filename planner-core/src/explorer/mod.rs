@@ -214,7 +214,7 @@ impl Config {
         } else {
             with_least
         };
-        TICK_WORK + most.saturating_add(far::LAST_WORK)
+        most.saturating_add(TICK_WORK + far::LAST_WORK)
     }
 
     /// What the far search gets of a tick in any case.

@@ -63,7 +63,7 @@ mod cell {
 
 /// Eight cells of a row as bytes, from bits: each byte is 0 or 1.
 fn spread(row: u64) -> u64 {
-    let nibble = |bits: u64| u64::from((bits as u32 & 0xf) * 0x0020_4081 & 0x0101_0101);
+    let nibble = |bits: u64| u64::from(((bits as u32 & 0xf) * 0x0020_4081) & 0x0101_0101);
     nibble(row) | nibble(row >> 4) << 32
 }
 
@@ -107,6 +107,14 @@ enum Pause {
     GivenUp(usize),
 }
 
+/// What happened on the way.
+struct Notes {
+    /// The queue had no room for a cell.
+    has_lost: bool,
+    /// The robot's own wave met another.
+    has_met: bool,
+}
+
 /// A wave's step from one cell.
 #[derive(Clone, Copy)]
 struct Step {
@@ -130,8 +138,7 @@ impl Step {
         queue: &mut Queue,
         number: usize,
         direction: u8,
-        has_lost: &mut bool,
-        meets: &mut bool,
+        notes: &mut Notes,
     ) -> Option<Pause> {
         let place = bytes.get_mut(number)?;
         let mut byte = *place;
@@ -141,7 +148,7 @@ impl Step {
                 return (!is_read).then_some(Pause::Unread(number));
             }
             if self.given_up >> (byte & cell::LABEL) & 1 == 0 {
-                *meets |= self.is_own && byte & cell::LABEL != self.mark & cell::LABEL;
+                notes.has_met |= self.is_own && byte & cell::LABEL != self.mark & cell::LABEL;
                 return None;
             }
             if self.is_own {
@@ -151,7 +158,7 @@ impl Step {
         }
         *place = byte & cell::TAKEN | (direction ^ 2) << cell::BACK | self.mark;
         if !queue.push(places, number) {
-            *has_lost = true;
+            notes.has_lost = true;
         }
         let is_goal = byte & (cell::TAKEN | self.goal) == self.goal;
         is_goal.then_some(Pause::Goal(number))
@@ -365,7 +372,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let bytes = rows.as_flattened_mut();
         let (mut queue, mut layer_end) = (self.queue, self.layer_end);
         let (mut from, mut next) = (self.from as usize, self.next);
-        let (mut has_lost, mut has_met) = (false, false);
+        let mut notes = Notes {
+            has_lost: false,
+            has_met: false,
+        };
         let mut left = cells;
         let pause = loop {
             if next > 3 {
@@ -405,8 +415,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                     if next <= $direction {
                         next = $direction;
                         let (places, queue) = (&mut places, &mut queue);
-                        let (lost, meets) = (&mut has_lost, &mut has_met);
-                        match step.enter(bytes, places, queue, $number, $direction, lost, meets) {
+                        match step.enter(bytes, places, queue, $number, $direction, &mut notes) {
                             None => {}
                             Some(Pause::Goal(number)) => {
                                 next += 1;
@@ -434,8 +443,8 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         self.layer_end = layer_end;
         self.from = from as u32;
         self.next = next;
-        self.has_lost |= has_lost;
-        self.has_met |= has_met;
+        self.has_lost |= notes.has_lost;
+        self.has_met |= notes.has_met;
         (pause, left)
     }
 
@@ -458,10 +467,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             };
             let row = |layer: u64| spread(layer >> (8 * y));
             let read = READ
-                | row(free) * u64::from(cell::FREE)
-                | row(open) * u64::from(cell::FREE << 1)
-                | row(frontier) * u64::from(cell::GOAL)
-                | row(goals) * u64::from(cell::GOAL << 1);
+                | (row(free) * u64::from(cell::FREE))
+                | (row(open) * u64::from(cell::FREE << 1))
+                | (row(frontier) * u64::from(cell::GOAL))
+                | (row(goals) * u64::from(cell::GOAL << 1));
             let taken = u64::from_le_bytes(*bytes) & TAKEN;
             *bytes = (taken | read).to_le_bytes();
         }

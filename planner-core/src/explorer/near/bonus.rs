@@ -58,8 +58,9 @@ impl Bonus {
 
     /// The largest of some cells of a row, and those that have it.
     pub(super) fn largest(&self, row: usize, mut cells: u32) -> (i32, u32) {
+        let [ones, twos, fours] = &self.0;
         let mut bonus = 1;
-        for (plane, value) in self.0.iter().zip([1, 2, 4]).rev() {
+        for (plane, value) in [(fours, 4), (twos, 2), (ones, 1)] {
             let have = cells & plane.get(row).copied().unwrap_or(0);
             if have != 0 {
                 cells = have;

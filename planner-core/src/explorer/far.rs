@@ -6,9 +6,9 @@
 //! served in turn, by id. When every frontier is spoken for, the pass ends at once.
 //!
 //! Where this robot is served, its wave has left the way: it is turned around, from the
-//! frontier back, and followed from wherever the robot has got to in the meantime. Where
-//! the wave met others, that way may go round them: then a *route* is searched for, by a
-//! wave from the frontier that ends where it meets the robot.
+//! frontier back. Where the wave met others, that way may go round them, and the robot may
+//! have walked on meanwhile: then a *route* is searched for, by a wave from the frontier
+//! that ends where it meets the robot.
 
 use heapless::Vec;
 
@@ -369,14 +369,13 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             return Outcome::Searching;
         }
         let (goal, steps) = (*goal, *steps);
-        let is_at_start = start.is_some_and(|start| start.cell == around.position);
-        // The robot has gone no farther from the start than its wave.
-        let most = if is_at_start {
-            steps
+        let is_there = start.is_some_and(|start| start.cell == around.position);
+        let way = if is_there {
+            self.way(goal, around.position, steps, work)
         } else {
-            2 * self.wave.layer()
+            None
         };
-        match self.way(goal, around.position, most, work) {
+        match way {
             Some(way) => Outcome::Found(way),
             None => {
                 self.start_route(goal, around);

@@ -138,7 +138,7 @@ fn matched(scene: &Scene) -> Option<(Cell, u32)> {
                         continue;
                     }
                     let was_reached = reached.insert(cell, (wave, distance)).is_some();
-                    queue.push_back((cell, distance));
+                    queue.push_back(cell);
                     if was_reached || !is_frontier(cell) || taken.contains(&cell) {
                         continue;
                     }
@@ -151,10 +151,10 @@ fn matched(scene: &Scene) -> Option<(Cell, u32)> {
                         taken.extend(crate::tile::bits(cells).map(|bit| at.cell(bit)));
                     }
                 }
-                let Some((from, distance)) = queue.pop_front() else {
+                let Some(from) = queue.pop_front() else {
                     break;
                 };
-                let wave = reached[&from].0;
+                let (wave, distance) = reached[&from];
                 for side in Direction::ALL {
                     next.push_back((wave, from.step(side), distance + 1));
                 }

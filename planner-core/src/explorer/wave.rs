@@ -166,12 +166,16 @@ impl Step {
 }
 
 /// The state of waves over a map of `TW`×`TH` tiles: 70 bytes a tile.
+///
+/// Cells are numbered row by row over the tiles that the extent needs, and the queue has
+/// room by the number of these: what the waves do is the same whatever `TW` and `TH` are.
 pub(crate) struct Wave<const TW: usize, const TH: usize> {
-    /// Eight cells of a row in each of eight rows of tiles: together row by row.
-    cells: [[[[u8; TILE]; TW]; TILE]; TH],
+    cells: [[[u8; TILE * TILE]; TW]; TH],
     places: [[[u16; PER_TILE]; TW]; TH],
     queue: Queue,
-    /// Cells that count: those of the rows that the map has.
+    /// Cells of a row.
+    stride: u32,
+    /// Cells of all rows.
     end: u32,
     /// Cells forgotten so far, up to `end`, and what is kept of each.
     cleared: u32,
@@ -194,16 +198,12 @@ pub(crate) struct Wave<const TW: usize, const TH: usize> {
 }
 
 impl<const TW: usize, const TH: usize> Wave<TW, TH> {
-    /// Cells of a row.
-    const STRIDE: usize = TW * TILE;
-    /// Whether a number has more than 16 bits.
-    const IS_LARGE: bool = TW * TH * TILE * TILE > 1 << 16;
-
     pub(crate) const fn new() -> Self {
         Self {
-            cells: [[[[0; TILE]; TW]; TILE]; TH],
+            cells: [[[0; TILE * TILE]; TW]; TH],
             places: [[[0; PER_TILE]; TW]; TH],
             queue: Queue::EMPTY,
+            stride: 0,
             end: 0,
             cleared: 0,
             kept: 0,
@@ -219,43 +219,56 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     }
 
     fn bytes(&self) -> &[u8] {
-        self.cells.as_flattened().as_flattened().as_flattened()
+        let bytes = self.cells.as_flattened().as_flattened();
+        bytes.get(..self.end as usize).unwrap_or(bytes)
     }
 
     fn bytes_mut(&mut self) -> &mut [u8] {
-        let rows = self.cells.as_flattened_mut().as_flattened_mut();
-        rows.as_flattened_mut()
+        let bytes = self.cells.as_flattened_mut().as_flattened_mut();
+        let end = (self.end as usize).min(bytes.len());
+        bytes.get_mut(..end).unwrap_or_default()
     }
 
     fn byte(&self, number: usize) -> u8 {
         self.bytes().get(number).copied().unwrap_or(0)
     }
 
+    /// The places of the queue that the extent needs.
+    fn places(places: &mut [[[u16; PER_TILE]; TW]; TH], end: u32) -> Places<'_> {
+        let halves = places.as_flattened_mut().as_flattened_mut();
+        let room = (end as usize / (TILE * TILE) * PER_TILE).min(halves.len());
+        Places {
+            halves: halves.get_mut(..room).unwrap_or_default(),
+            is_large: end > 1 << 16,
+        }
+    }
+
     fn push(&mut self, number: usize) -> bool {
-        let mut places = Places {
-            halves: self.places.as_flattened_mut().as_flattened_mut(),
-            is_large: Self::IS_LARGE,
-        };
-        self.queue.push(&mut places, number)
+        self.queue
+            .push(&mut Self::places(&mut self.places, self.end), number)
     }
 
-    fn number(cell: Cell) -> Option<usize> {
-        let x = usize::try_from(cell.x).ok().filter(|x| *x < Self::STRIDE)?;
-        Some(usize::try_from(cell.y).ok()? * Self::STRIDE + x)
+    fn number(&self, cell: Cell) -> Option<usize> {
+        let stride = self.stride as usize;
+        let x = usize::try_from(cell.x).ok().filter(|x| *x < stride)?;
+        Some(usize::try_from(cell.y).ok()? * stride + x)
     }
 
-    const fn cell(number: usize) -> Cell {
-        Cell::new(
-            (number % Self::STRIDE) as i16,
-            (number / Self::STRIDE) as i16,
-        )
+    const fn cell(&self, number: usize) -> Cell {
+        let number = number as u32;
+        let stride = if self.stride == 0 { 1 } else { self.stride };
+        Cell::new((number % stride) as i16, (number / stride) as i16)
     }
 
     /// Forgets all waves and, unless it is kept, who is spoken for; but it is
     /// [`clear`](Self::clear) that does it.
     pub(crate) fn begin(&mut self, extent: Extent, keeps_taken: bool) {
-        let rows = usize::from(extent.height).min(TH * TILE);
-        self.end = (rows * Self::STRIDE) as u32;
+        let length = |cells: u16, most: usize| {
+            let tiles = usize::from(cells).div_ceil(TILE);
+            (tiles.clamp(1, most) * TILE) as u32
+        };
+        self.stride = length(extent.width, TW);
+        self.end = self.stride * length(extent.height, TH);
         self.cleared = 0;
         self.kept = if keeps_taken { cell::TAKEN } else { 0 };
         if !keeps_taken {
@@ -296,7 +309,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         work: &mut u32,
     ) -> Event {
         *work += VISIT_WORK;
-        let Some(number) = Self::number(cell) else {
+        let Some(number) = self.number(cell) else {
             return Event::Nothing;
         };
         if self.byte(number) & !cell::TAKEN == 0 {
@@ -334,7 +347,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 Pause::Goal(number) => {
                     return Event::Goal {
                         label: self.byte(number) & cell::LABEL,
-                        cell: Self::cell(number),
+                        cell: self.cell(number),
                     };
                 }
                 Pause::Unread(number) => {
@@ -343,7 +356,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 }
                 Pause::GivenUp(number) => {
                     *work += VISIT_WORK;
-                    let cell = Self::cell(number);
+                    let cell = self.cell(number);
                     if !around.is_open(cell) {
                         self.next += 1;
                     } else if let Some(byte) = self.bytes_mut().get_mut(number) {
@@ -364,12 +377,11 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     /// Takes so many cells out of the queue, or less; why, and how many were left.
     #[inline(never)]
     fn run_through(&mut self, labels: Labels, cells: u32) -> (Pause, u32) {
-        let mut places = Places {
-            halves: self.places.as_flattened_mut().as_flattened_mut(),
-            is_large: Self::IS_LARGE,
-        };
-        let rows = self.cells.as_flattened_mut().as_flattened_mut();
-        let bytes = rows.as_flattened_mut();
+        let mut places = Self::places(&mut self.places, self.end);
+        let bytes = self.cells.as_flattened_mut().as_flattened_mut();
+        let end = (self.end as usize).min(bytes.len());
+        let bytes = bytes.get_mut(..end).unwrap_or_default();
+        let stride = self.stride as usize;
         let (mut queue, mut layer_end) = (self.queue, self.layer_end);
         let (mut from, mut next) = (self.from as usize, self.next);
         let mut notes = Notes {
@@ -407,8 +419,8 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 is_own: own == 1,
             };
             // Past the last column and the first there is nothing.
-            let is_last = from % TILE == TILE - 1 && (from + 1).is_multiple_of(Self::STRIDE);
-            let is_first = from % TILE == 0 && from.is_multiple_of(Self::STRIDE);
+            let is_last = from % TILE == TILE - 1 && (from + 1).is_multiple_of(stride);
+            let is_first = from % TILE == 0 && from.is_multiple_of(stride);
             // Written out four times: a loop takes a third longer.
             macro_rules! enter {
                 ($direction:literal, $number:expr) => {
@@ -427,7 +439,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 };
             }
             enter!(0, if is_last { usize::MAX } else { from + 1 });
-            enter!(1, from + Self::STRIDE);
+            enter!(1, from + stride);
             enter!(
                 2,
                 if is_first {
@@ -436,7 +448,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                     from.wrapping_sub(1)
                 }
             );
-            enter!(3, from.wrapping_sub(Self::STRIDE));
+            enter!(3, from.wrapping_sub(stride));
             next = 4;
         };
         self.queue = queue;
@@ -451,20 +463,21 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     /// Reads the tile of a cell from the map.
     #[inline(never)] // once a tile
     fn read(&mut self, number: usize, around: &Surroundings<TW, TH>) {
-        let Cell { x, y } = Self::cell(number);
+        let Cell { x, y } = self.cell(number);
         let (column, row) = ((x >> 3) as u8, (y >> 3) as u8);
         let at = TileIndex::new(column, row);
         let (free, frontier) = (around.free(at), around.frontier(at));
         let (open, goals) = (around.open(at), frontier & !around.aside.cells(at));
-        let Some(rows) = self.cells.get_mut(usize::from(row)) else {
-            return;
-        };
+        let stride = self.stride as usize;
+        let first = usize::from(row) * TILE * stride + usize::from(column) * TILE;
         const READ: u64 = u64::from_ne_bytes([cell::READ; TILE]);
         const TAKEN: u64 = u64::from_ne_bytes([cell::TAKEN; TILE]);
-        for (tiles, y) in rows.iter_mut().zip(0u32..) {
-            let Some(bytes) = tiles.get_mut(usize::from(column)) else {
-                return;
-            };
+        let (words, _) = self.bytes_mut().as_chunks_mut::<TILE>();
+        let rows = words
+            .iter_mut()
+            .skip(first / TILE)
+            .step_by((stride / TILE).max(1));
+        for (bytes, y) in rows.take(TILE).zip(0u32..) {
             let row = |layer: u64| spread(layer >> (8 * y));
             let read = READ
                 | (row(free) * u64::from(cell::FREE))
@@ -513,7 +526,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     pub(crate) fn reached(&self, at: TileIndex) -> u64 {
         bits(u64::MAX)
             .filter(|bit| {
-                let number = Self::number(at.cell(*bit));
+                let number = self.number(at.cell(*bit));
                 let number = number.filter(|number| *number < self.cleared as usize);
                 let byte = number.and_then(|number| self.bytes().get(number));
                 byte.is_some_and(|byte| byte & cell::REACHED != 0)
@@ -523,15 +536,16 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
 
     /// The direction back to where the wave `label` began, if it has reached the cell.
     pub(crate) fn direction_at(&self, cell: Cell, label: u8) -> Option<Direction> {
-        let byte = self.bytes().get(Self::number(cell)?)?;
+        let byte = self.bytes().get(self.number(cell)?)?;
         let is_its = byte & (cell::REACHED | cell::LABEL) == cell::REACHED | label;
         is_its.then(|| Direction::from_index(byte >> cell::BACK))
     }
 
     /// Turns the direction at a cell that a wave has reached.
     pub(crate) fn turn(&mut self, cell: Cell, direction: Direction) {
-        let byte = Self::number(cell).and_then(|number| self.bytes_mut().get_mut(number));
-        if let Some(byte) = byte {
+        if let Some(number) = self.number(cell)
+            && let Some(byte) = self.bytes_mut().get_mut(number)
+        {
             *byte = *byte & !(3 << cell::BACK) | (direction as u8) << cell::BACK;
         }
     }
@@ -539,8 +553,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     /// Speaks for frontier cells of a tile.
     pub(crate) fn take(&mut self, at: TileIndex, cells: u64) {
         let mut new = 0;
-        for number in bits(cells).filter_map(|bit| Self::number(at.cell(bit))) {
-            if let Some(byte) = self.bytes_mut().get_mut(number) {
+        for bit in bits(cells) {
+            if let Some(number) = self.number(at.cell(bit))
+                && let Some(byte) = self.bytes_mut().get_mut(number)
+            {
                 new += u32::from(*byte & cell::TAKEN == 0);
                 *byte |= cell::TAKEN;
             }

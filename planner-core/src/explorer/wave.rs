@@ -26,9 +26,9 @@ const _: () = assert!(
 );
 
 /// Work of taking a cell out of the queue and looking at its neighbours, in instructions.
-const VISIT_WORK: u32 = 200;
+const VISIT_WORK: u32 = 155;
 /// Work of reading a tile of the map.
-const LOAD_WORK: u32 = 1600;
+const LOAD_WORK: u32 = 2200;
 /// Work of forgetting [`CHUNK`] cells.
 const CHUNK_WORK: u32 = 660;
 /// Work of looking at [`SOME`] cells for those that the queue lost.
@@ -101,10 +101,8 @@ enum Pause {
     Empty,
     /// A goal was reached.
     Goal(usize),
-    /// The map was not read there.
+    /// The map was not read there, or a wave that gave up had reached the cell.
     Unread(usize),
-    /// Another wave gave the cell up. Can the robot enter?
-    GivenUp(usize),
 }
 
 /// What happened on the way.
@@ -115,52 +113,68 @@ struct Notes {
     has_met: bool,
 }
 
-/// A wave's step from one cell.
-#[derive(Clone, Copy)]
-struct Step {
-    /// What tells that the wave may enter, and that it reaches a goal.
-    free: u8,
-    goal: u8,
+/// A wave's steps from one cell: the robot's own wave or another's.
+struct Step<'a, 'b, const OWN: bool> {
+    bytes: &'a mut [u8],
+    places: &'a mut Places<'b>,
+    queue: &'a mut Queue,
+    notes: &'a mut Notes,
     /// What the cells get.
     mark: u8,
     /// The labels that gave up.
     given_up: u16,
-    is_own: bool,
 }
 
-impl Step {
+impl<const OWN: bool> Step<'_, '_, OWN> {
+    /// What tells that the wave may enter, and that it reaches a goal.
+    const FREE: u8 = cell::FREE << OWN as u8;
+    const GOAL: u8 = cell::GOAL << OWN as u8;
+
+    /// Enters the neighbours of a cell, until something comes of it. What was entered
+    /// before is not entered again.
+    #[inline(always)] // in the innermost loop, once for each kind of wave
+    fn enter_all(&mut self, from: usize, stride: usize) -> Option<Pause> {
+        // Past the last column and the first there is nothing.
+        if from % TILE != TILE - 1 || !(from + 1).is_multiple_of(stride) {
+            let pause = self.enter(from + 1, 0);
+            if pause.is_some() {
+                return pause;
+            }
+        }
+        let pause = self.enter(from + stride, 1);
+        if pause.is_some() {
+            return pause;
+        }
+        if !from.is_multiple_of(TILE) || !from.is_multiple_of(stride) {
+            let pause = self.enter(from.wrapping_sub(1), 2);
+            if pause.is_some() {
+                return pause;
+            }
+        }
+        self.enter(from.wrapping_sub(stride), 3)
+    }
+
     /// Enters a cell in direction number `direction`, if it can.
     #[inline(always)] // in the innermost loop
-    fn enter(
-        self,
-        bytes: &mut [u8],
-        places: &mut Places<'_>,
-        queue: &mut Queue,
-        number: usize,
-        direction: u8,
-        notes: &mut Notes,
-    ) -> Option<Pause> {
-        let place = bytes.get_mut(number)?;
-        let mut byte = *place;
-        if byte & (cell::REACHED | self.free) != self.free {
-            if byte & cell::REACHED == 0 {
-                let is_read = byte & cell::READ != 0;
-                return (!is_read).then_some(Pause::Unread(number));
+    fn enter(&mut self, number: usize, direction: u8) -> Option<Pause> {
+        let place = self.bytes.get_mut(number)?;
+        let byte = *place;
+        if byte & cell::REACHED != 0 {
+            if self.given_up >> (byte & cell::LABEL) & 1 == 1 {
+                return Some(Pause::Unread(number));
             }
-            if self.given_up >> (byte & cell::LABEL) & 1 == 0 {
-                notes.has_met |= self.is_own && byte & cell::LABEL != self.mark & cell::LABEL;
-                return None;
-            }
-            if self.is_own {
-                return Some(Pause::GivenUp(number));
-            }
-            byte &= cell::TAKEN;
+            self.notes.has_met |= OWN && byte & cell::LABEL != self.mark & cell::LABEL;
+            return None;
+        }
+        if byte & Self::FREE == 0 {
+            let is_read = byte & cell::READ != 0;
+            return (!is_read).then_some(Pause::Unread(number));
         }
         *place = byte & cell::TAKEN | (direction ^ 2) << cell::BACK | self.mark;
-        if !queue.push(places, number) {
-            notes.has_lost = true;
+        if !self.queue.push(self.places, number) {
+            self.notes.has_lost = true;
         }
-        let is_goal = byte & (cell::TAKEN | self.goal) == self.goal;
+        let is_goal = byte & (cell::TAKEN | Self::GOAL) == Self::GOAL;
         is_goal.then_some(Pause::Goal(number))
     }
 }
@@ -180,10 +194,9 @@ pub(crate) struct Wave<const TW: usize, const TH: usize> {
     /// Cells forgotten so far, up to `end`, and what is kept of each.
     cleared: u32,
     kept: u8,
-    /// The cell whose neighbours are being looked at, and the number of the direction of
-    /// the next one; 4: none is left.
+    /// The cell whose neighbours are being looked at, and whether any may be left.
     from: u32,
-    next: u8,
+    is_under_way: bool,
     /// Whether the queue had no room for a cell since all were last looked at.
     has_lost: bool,
     /// Whether the robot's own wave has met another.
@@ -208,7 +221,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             cleared: 0,
             kept: 0,
             from: 0,
-            next: 0,
+            is_under_way: false,
             has_lost: false,
             has_met: false,
             searched: 0,
@@ -239,7 +252,8 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let room = (end as usize / (TILE * TILE) * PER_TILE).min(halves.len());
         Places {
             halves: halves.get_mut(..room).unwrap_or_default(),
-            is_large: end > 1 << 16,
+            // The first is known when it is compiled, and false on chips.
+            is_large: TW * TH * TILE * TILE > 1 << 16 && end > 1 << 16,
         }
     }
 
@@ -275,7 +289,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             self.taken = 0;
         }
         self.queue = Queue::EMPTY;
-        self.next = 4;
+        self.is_under_way = false;
         self.has_lost = false;
         self.has_met = false;
         self.searched = self.end;
@@ -314,7 +328,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         };
         if self.byte(number) & !cell::TAKEN == 0 {
             *work += LOAD_WORK;
-            self.read(number, around);
+            self.read(number, labels, around);
         }
         let byte = self.byte(number);
         let goal = cell::GOAL << u8::from(label == labels.own);
@@ -352,16 +366,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 }
                 Pause::Unread(number) => {
                     *work += LOAD_WORK;
-                    self.read(number, around);
-                }
-                Pause::GivenUp(number) => {
-                    *work += VISIT_WORK;
-                    let cell = self.cell(number);
-                    if !around.is_open(cell) {
-                        self.next += 1;
-                    } else if let Some(byte) = self.bytes_mut().get_mut(number) {
-                        *byte = *byte & cell::TAKEN | cell::READ | cell::FREE | cell::FREE << 1;
-                    }
+                    self.read(number, labels, around);
                 }
                 Pause::Empty => {
                     *work += SOME_WORK;
@@ -383,14 +388,14 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let bytes = bytes.get_mut(..end).unwrap_or_default();
         let stride = self.stride as usize;
         let (mut queue, mut layer_end) = (self.queue, self.layer_end);
-        let (mut from, mut next) = (self.from as usize, self.next);
+        let (mut from, mut is_under_way) = (self.from as usize, self.is_under_way);
         let mut notes = Notes {
             has_lost: false,
             has_met: false,
         };
         let mut left = cells;
         let pause = loop {
-            if next > 3 {
+            if !is_under_way {
                 if left == 0 {
                     break Pause::Enough;
                 }
@@ -403,66 +408,50 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 };
                 left -= 1;
                 from = first;
-                next = 0;
             }
-            let label = bytes.get(from).copied().unwrap_or(0) & cell::LABEL;
-            if labels.has_given_up(label) {
-                next = 4;
+            // A wave that gave up may have left it here.
+            let byte = bytes.get(from).copied().unwrap_or(0);
+            let label = byte & cell::LABEL;
+            if byte & cell::REACHED == 0 || labels.has_given_up(label) {
+                is_under_way = false;
                 continue;
             }
-            let own = u8::from(label == labels.own);
-            let step = Step {
-                free: cell::FREE << own,
-                goal: cell::GOAL << own,
-                mark: cell::REACHED | label,
-                given_up: labels.given_up,
-                is_own: own == 1,
-            };
-            // Past the last column and the first there is nothing.
-            let is_last = from % TILE == TILE - 1 && (from + 1).is_multiple_of(stride);
-            let is_first = from % TILE == 0 && from.is_multiple_of(stride);
-            // Written out four times: a loop takes a third longer.
-            macro_rules! enter {
-                ($direction:literal, $number:expr) => {
-                    if next <= $direction {
-                        next = $direction;
-                        let (places, queue) = (&mut places, &mut queue);
-                        match step.enter(bytes, places, queue, $number, $direction, &mut notes) {
-                            None => {}
-                            Some(Pause::Goal(number)) => {
-                                next += 1;
-                                break Pause::Goal(number);
-                            }
-                            Some(pause) => break pause,
-                        }
+            macro_rules! step {
+                ($own:literal) => {
+                    Step::<$own> {
+                        bytes: &mut *bytes,
+                        places: &mut places,
+                        queue: &mut queue,
+                        notes: &mut notes,
+                        mark: cell::REACHED | label,
+                        given_up: labels.given_up,
                     }
+                    .enter_all(from, stride)
                 };
             }
-            enter!(0, if is_last { usize::MAX } else { from + 1 });
-            enter!(1, from + stride);
-            enter!(
-                2,
-                if is_first {
-                    usize::MAX
-                } else {
-                    from.wrapping_sub(1)
-                }
-            );
-            enter!(3, from.wrapping_sub(stride));
-            next = 4;
+            let pause = if label == labels.own {
+                step!(true)
+            } else {
+                step!(false)
+            };
+            is_under_way = pause.is_some();
+            if let Some(pause) = pause {
+                break pause;
+            }
         };
         self.queue = queue;
         self.layer_end = layer_end;
         self.from = from as u32;
-        self.next = next;
+        self.is_under_way = is_under_way;
         self.has_lost |= notes.has_lost;
         self.has_met |= notes.has_met;
         (pause, left)
     }
 
-    /// Reads the tile of a cell from the map.
-    #[inline(never)] // once a tile
-    fn read(&mut self, number: usize, around: &Surroundings<TW, TH>) {
+    /// Reads the tile of a cell from the map, but for what waves have reached that did not
+    /// give up.
+    #[inline(never)] // once a tile, and again where a wave gave up
+    fn read(&mut self, number: usize, labels: Labels, around: &Surroundings<TW, TH>) {
         let Cell { x, y } = self.cell(number);
         let (column, row) = ((x >> 3) as u8, (y >> 3) as u8);
         let at = TileIndex::new(column, row);
@@ -485,7 +474,12 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 | (row(frontier) * u64::from(cell::GOAL))
                 | (row(goals) * u64::from(cell::GOAL << 1));
             let taken = u64::from_le_bytes(*bytes) & TAKEN;
-            *bytes = (taken | read).to_le_bytes();
+            let read = (taken | read).to_le_bytes();
+            for (byte, read) in bytes.iter_mut().zip(read) {
+                if *byte & cell::REACHED == 0 || labels.has_given_up(*byte) {
+                    *byte = read;
+                }
+            }
         }
     }
 

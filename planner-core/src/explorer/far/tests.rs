@@ -49,9 +49,10 @@ fn scene() -> impl Strategy<Value = Scene> {
         })
 }
 
-/// The robot has an even id between those of the others, which are odd.
+/// The cells of the scene in the corner of a map as large as its type. The robot has an
+/// even id between those of the others, which are odd.
 fn around<const TW: usize, const TH: usize>(scene: &Scene) -> (Surroundings<TW, TH>, Others) {
-    let mut map = Map::new(Extent::new(SIDE.into(), SIDE.into())).unwrap();
+    let mut map = Map::new(Extent::new(8 * TW as u16, 8 * TH as u16)).unwrap();
     for at in every_tile(3, 3) {
         let kind = |bit: u32| {
             let Cell { x, y } = at.cell(bit);
@@ -102,8 +103,8 @@ fn search<const TW: usize, const TH: usize>(
 
 /// The same matching with sets and maps: the cell of the robot's frontier, and how far
 /// its wave went.
-fn matched(scene: &Scene) -> Option<(Cell, u32)> {
-    let (around, _) = around::<3, 3>(scene);
+fn matched<const TW: usize, const TH: usize>(scene: &Scene) -> Option<(Cell, u32)> {
+    let (around, _) = around::<TW, TH>(scene);
     let mut robots: std::vec::Vec<(u8, Cell)> = scene
         .others
         .iter()
@@ -193,12 +194,12 @@ fn follow(way: &Candidate, around: &Surroundings<3, 3>) -> Cell {
 proptest! {
     #[test]
     fn robots_are_matched_as_with_sets(scene in scene(), slice in 1u32..100_000) {
-        // So many tiles that the queue has room for every cell.
+        // So large that the queue has room for every cell of the scene.
         let found = match search::<16, 16>(&scene, slice).0 {
             Outcome::Found(way) => Some((way.goal, way.length)),
             _ => None,
         };
-        let expected = matched(&scene);
+        let expected = matched::<16, 16>(&scene);
         prop_assert_eq!(found.map(|way| way.0), expected.map(|way| way.0));
         if let (Some((_, length)), Some((_, distance))) = (found, expected) {
             prop_assert!(length <= distance);
@@ -210,7 +211,7 @@ proptest! {
         scene in scene(), slice in 1u32..100_000,
     ) {
         let (outcome, around) = search::<3, 3>(&scene, slice);
-        match (outcome, matched(&scene)) {
+        match (outcome, matched::<3, 3>(&scene)) {
             (Outcome::Found(way), Some(_)) => {
                 prop_assert!(around.is_goal(way.goal));
                 prop_assert_eq!(follow(&way, &around), way.goal);

@@ -189,7 +189,7 @@ impl Config {
     /// The configuration that is shipped.
     pub const fn new() -> Self {
         Self {
-            slice: 240_000,
+            slice: 232_000,
             d_max: 2,
             tokens: 2,
             hysteresis: 3,

@@ -145,7 +145,10 @@ impl PlannerKind {
 }
 
 /// A planner of planner-core, here.
-fn on_host<const TW: usize, const TH: usize>(
+///
+/// # Errors
+/// A grid that a map of `TW`×`TH` tiles does not hold.
+pub fn on_host<const TW: usize, const TH: usize>(
     config: PlannerConfig,
     setup: Setup,
 ) -> Result<Box<dyn AnyPlanner<TW, TH>>, ExtentError> {

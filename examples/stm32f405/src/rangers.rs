@@ -38,12 +38,22 @@ impl<B: I2c> Rangers<B> {
     /// One beam for each sensor. A sensor that does not answer has measured
     /// nothing: the planner leaves such a beam out.
     pub(crate) fn scan(&mut self) -> [Beam; 4] {
-        MOUNTED.map(|(address, bearing)| {
-            let range = self.measure(address).unwrap_or_else(|error| {
-                defmt::warn!("sensor {=u8:#x}: {}", address, defmt::Debug2Format(&error));
-                f32::NAN
-            });
-            Beam { bearing, range }
+        MOUNTED.map(|(address, bearing)| Beam {
+            bearing,
+            range: self.range(address),
+        })
+    }
+
+    /// Distances ahead and behind, in cells; not a number, if there is no measurement.
+    pub(crate) fn along(&mut self) -> (f32, f32) {
+        let [(ahead, _), _, (behind, _), _] = MOUNTED;
+        (self.range(ahead), self.range(behind))
+    }
+
+    fn range(&mut self, address: u8) -> f32 {
+        self.measure(address).unwrap_or_else(|error| {
+            defmt::warn!("sensor {=u8:#x}: {}", address, defmt::Debug2Format(&error));
+            f32::NAN
         })
     }
 

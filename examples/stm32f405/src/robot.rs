@@ -56,12 +56,15 @@ where
         // `explorer.receive` for every packet that has come in.
         match explorer.tick() {
             Action::Move(direction) => {
-                wheels.go(heading, direction);
+                wheels.turn(heading, direction);
                 heading = direction;
-                position = position.step(direction);
-                // A robot that notices that it was stopped reports `Motion::Blocked`
-                // and stays where it is.
-                explorer.report(Motion::Moved);
+                let motion = step(&mut rangers, &mut wheels);
+                if motion == Motion::Moved {
+                    position = position.step(direction);
+                } else {
+                    defmt::debug!("stopped on the way to {}", position.step(direction));
+                }
+                explorer.report(motion);
             }
             Action::Wait => match explorer.waiting() {
                 // No sensor has shown what is there: another one looks at it.
@@ -92,6 +95,37 @@ where
                 crate::rest();
             }
         }
+    }
+}
+
+/// Goes one cell ahead, and says whether it came there: not if something was in the way,
+/// and not if afterwards nothing is nearer ahead, and nothing farther behind. Wheels that
+/// push against glass say the same of themselves as wheels that drive.
+fn step<I, P, Q, A, B, D>(rangers: &mut Rangers<I>, wheels: &mut Wheels<P, Q, A, B, D>) -> Motion
+where
+    I: I2c,
+    P: SetDutyCycle,
+    Q: SetDutyCycle,
+    A: OutputPin,
+    B: OutputPin,
+    D: DelayNs,
+{
+    /// From the middle of a cell, in cells: a wall is half a cell away.
+    const NEXT_TO_IT: f32 = 0.8;
+    /// The least by which a step of one cell shows.
+    const SHOWS: f32 = 0.5;
+
+    let (ahead, behind) = rangers.along();
+    if ahead < NEXT_TO_IT {
+        return Motion::Blocked;
+    }
+    wheels.go();
+    let (ahead_now, behind_now) = rangers.along();
+    // A distance that was not measured says nothing against it.
+    let stayed = |grew: f32| grew < SHOWS;
+    match stayed(ahead - ahead_now) && stayed(behind_now - behind) {
+        true => Motion::Blocked,
+        false => Motion::Moved,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Two wheels, driven by pulse width, that go from cell to cell by time.
 //!
 //! Time is a poor measure of the way; a robot with encoders or a flow sensor
-//! replaces [`Wheels::go`] by a controller, and reports what really happened.
+//! replaces [`Wheels::go`] by a controller, which knows whether it has come there.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::OutputPin;
@@ -32,9 +32,8 @@ where
     B: OutputPin,
     D: DelayNs,
 {
-    /// Turns from `heading` to `direction` and goes one cell.
-    pub(crate) fn go(&mut self, heading: Direction, direction: Direction) {
-        self.turn(heading, direction);
+    /// Goes one cell ahead.
+    pub(crate) fn go(&mut self) {
         self.drive(false, false, STEP_MS);
     }
 

@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 
-use crate::shell::{Command, cargo, command};
+use crate::shell::{Command, cargo, command, root};
 use crate::{
     c_interface, c_library, crazyflie, documents, firmware, fuzz, host, install, lab, output,
     slurm, worst,
@@ -169,6 +169,11 @@ const CHECKS: &[Check] = &[
         name: "targets",
         title: "planner-core builds for every chip, with and without its features",
         run: core_builds_for_chips,
+    },
+    Check {
+        name: "msrv",
+        title: "planner-core builds with the oldest compiler that its manifest names",
+        run: core_builds_with_its_oldest_compiler,
     },
     Check {
         name: "package",
@@ -355,6 +360,22 @@ fn core_builds_for_chips() -> Result<String> {
     build().arg("--no-default-features").run()?;
     build().arg("--all-features").run()?;
     Ok(CHIPS.join(", "))
+}
+
+/// What others build with may be older than what this project is built with.
+fn core_builds_with_its_oldest_compiler() -> Result<String> {
+    let manifest = std::fs::read_to_string(root().join("planner-core/Cargo.toml"))?;
+    let oldest = manifest
+        .lines()
+        .find_map(|line| line.strip_prefix("rust-version = \"")?.strip_suffix('"'))
+        .context("the manifest of planner-core names no rust-version")?;
+    install::toolchain(oldest)?;
+    for features in ["--all-features", "--no-default-features"] {
+        command("rustup")
+            .args(["run", oldest, "cargo", "check", "-p=planner-core", features])
+            .run()?;
+    }
+    Ok(format!("Rust {oldest}"))
 }
 
 /// The crate as its users get it is built, without what it has for surveys; and it

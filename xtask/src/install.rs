@@ -35,19 +35,25 @@ pub(crate) fn target(triple: &str) -> Result<()> {
     or_say(&why, rustup().args(["add", triple]))
 }
 
-/// The nightly toolchain and `cargo fuzz`. Compiling it takes a minute or two.
-pub(crate) fn cargo_fuzz() -> Result<()> {
+/// A compiler of another version than this project's.
+pub(crate) fn toolchain(version: &str) -> Result<()> {
     let toolchains = command("rustup").args(["toolchain", "list"]).output()?;
-    if !toolchains
+    if toolchains
         .stdout
         .lines()
-        .any(|line| line.starts_with(NIGHTLY))
+        .any(|line| line.starts_with(&format!("{version}-")))
     {
-        or_say(
-            "Installing the compiler that the sanitizers come with",
-            command("rustup").args(["toolchain", "install", NIGHTLY, "--profile=minimal"]),
-        )?;
+        return Ok(());
     }
+    or_say(
+        &format!("Installing the compiler of version {version}"),
+        command("rustup").args(["toolchain", "install", version, "--profile=minimal"]),
+    )
+}
+
+/// The nightly toolchain and `cargo fuzz`. Compiling it takes a minute or two.
+pub(crate) fn cargo_fuzz() -> Result<()> {
+    toolchain(NIGHTLY)?;
     let version = command("cargo").args(["fuzz", "--version"]).output()?;
     if version.success() {
         return Ok(());

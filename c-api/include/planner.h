@@ -391,7 +391,7 @@ PlannerResult planner_observe_cells(Planner *planner,
 
 // Decides what the robot does now. Call it once a tick.
 //
-// Stack: 2048 bytes.
+// Stack: 2816 bytes.
 PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 
 // Goes on after a stop with the map at hand: somebody opened a door, carried the robot,

@@ -182,7 +182,7 @@ pub extern "C" fn planner_observe_cells(
 
 /// Decides what the robot does now. Call it once a tick.
 ///
-/// Stack: 2048 bytes.
+/// Stack: 2816 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction) -> PlannerResult {
     answer(|| {

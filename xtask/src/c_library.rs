@@ -12,7 +12,7 @@ use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind};
 
 use crate::shell::{self, cargo, command};
-use crate::{c_interface, firmware, host, install};
+use crate::{c_interface, c_stack, firmware, host, install};
 
 /// What objects are made for: all processors of microcontrollers by Arm, with a
 /// floating-point unit (`hf`) and without.
@@ -161,8 +161,17 @@ pub(crate) fn links_anywhere() -> Result<String> {
     let mut sizes = Vec::new();
     for cells in [Cells::Few, Cells::Some, Cells::Many] {
         let object = build(firmware::TARGET, cells)?;
-        sizes.push(size(&object)?.to_string());
-        crate::c_stack::keeps_to_the_header(&object)?;
+        sizes.push(size(&object)?);
+        c_stack::keeps_to_the_header(&object)?;
     }
-    Ok(format!("flash {} bytes", sizes.join(", ")))
+    let [few, some, many] = sizes[..] else {
+        bail!("there are three sizes");
+    };
+    if many > few + 4096 {
+        bail!(
+            "{few} bytes of flash for maps of 32×32 cells, and {many} for 128×128: is a vacant \
+             planner not all zero any more? Then there is a copy of it in flash."
+        );
+    }
+    Ok(format!("flash {few}, {some}, {many} bytes"))
 }

@@ -138,10 +138,17 @@ impl NearSearch {
             + FLOOD / 3 * STEP_BACK_WORK
     };
 
+    /// All zero, as a vacant planner must be: nothing is read before it is loaded.
     pub(crate) const fn new() -> Self {
+        const ZERO: Row = Row {
+            front: 0,
+            unreached: 0,
+            bit: 0,
+            frontier: 0,
+        };
         Self {
             window: Window::new(),
-            rows: [Row::EMPTY; SIDE + 1],
+            rows: [ZERO; SIDE + 1],
             theirs: [TheirRow::EMPTY; SIDE + 1],
         }
     }
@@ -173,6 +180,9 @@ impl NearSearch {
                 frontier,
             };
             *theirs = TheirRow { front: 0, open };
+        }
+        if let Some(last) = self.rows.last_mut() {
+            *last = Row::EMPTY;
         }
         let visited = self.window.load(|at| around.map.tile(at).visited());
         Some(Bonus::of(visited))

@@ -15,7 +15,7 @@ use proptest::prelude::*;
 
 fn scenario(trouble: Trouble) -> Scenario {
     let world = Arc::new(generate(Family::Rooms, 31, 24, 7).unwrap());
-    let starts = world.place(3, &Starts::Random(7), false).unwrap();
+    let starts = world.place(6, &Starts::Random(7), false).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
     scenario.conditions.trouble = trouble;
     scenario
@@ -152,7 +152,7 @@ fn a_world_misleads_in_the_same_way_again_and_in_its_trace() {
     for trouble in troubles() {
         let scenario = scenario(trouble);
         let (outcome, trace) = run(&scenario);
-        assert_ne!(trace.records, calm.records, "{trouble}");
+        assert!(trace.records != calm.records, "{trouble}");
         let (again, trace_again) = run(&scenario);
         assert_eq!(again, outcome, "{trouble}");
         assert_eq!(trace_again.records, trace.records, "{trouble}");

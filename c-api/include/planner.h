@@ -475,6 +475,22 @@ float planner_yaw(uint8_t direction);
 // Stack: 128 bytes.
 PlannerResult planner_status(Planner *planner, PlannerStatus *status);
 
+// Writes the farthest cell of the way that the robot can go to in a straight line, centre
+// to centre, and whether there is one: every cell that the line touches is known to be
+// passable. At most 19 cells away each way. A robot that steers there instead of making the
+// step of the last move observes from any cell on its way, and reports only what stops it:
+// places on the line, on the way or beside the way keep the plan. Work: 16 tiles, and 64
+// lines of at most 20 rows each.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_waypoint(Planner *planner, bool *has_waypoint, PlannerCell *waypoint);
+
+// Writes the cells of the way, from the next one on: at most `room` of at most 256, up to
+// the goal or to where its rest is searched for; `count` is how many.
+//
+// Stack: 384 bytes.
+PlannerResult planner_way(Planner *planner, PlannerCell *cells, size_t room, size_t *count);
+
 // Writes the `PlannerState` of a cell. `PLANNER_RESULT_OFF_GRID`: there is no such cell.
 //
 // Stack: 128 bytes.

@@ -20,7 +20,8 @@ use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting
 pub use place::{PLANNER_MAX_CELLS, PLANNER_WORDS, Planner};
 pub use queries::{
     planner_cell, planner_middle_in_metres, planner_pose_from_metres, planner_result_text,
-    planner_row, planner_status, planner_stop_text, planner_wait_text, planner_yaw,
+    planner_row, planner_status, planner_stop_text, planner_wait_text, planner_way,
+    planner_waypoint, planner_yaw,
 };
 pub use types::{
     PlannerAction, PlannerActionKind, PlannerBeam, PlannerBearing, PlannerCell, PlannerConfig,

@@ -124,6 +124,8 @@ fn null_is_answered() {
         planner_middle_in_metres(&CONFIG, centre, null_mut(), null_mut()),
         planner_resume(null_mut()),
         planner_is_mute(ready, null_mut()),
+        planner_waypoint(ready, null_mut(), null_mut()),
+        planner_way(ready, null_mut(), 0, null_mut()),
     ] {
         assert_eq!(result, PlannerResult::Null);
     }
@@ -790,4 +792,46 @@ fn codes_have_words() {
             );
         }
     }
+}
+
+#[test]
+fn the_way_is_told_and_walked_in_a_straight_line() {
+    let mut memory = memory();
+    let ready = created(&mut memory, CONFIG);
+    let look = |x: i16| {
+        let free = (1..6).map(|x| (x, 1, 0));
+        let walls = (0..9).flat_map(|x| [(x, 0, 1), (x, 2, 1)]);
+        let seen: Vec<_> = walls
+            .chain([(0, 1, 1)])
+            .chain(free)
+            .map(|(x, y, blocked)| PlannerSeen {
+                cell: PlannerCell { x, y },
+                blocked,
+            })
+            .collect();
+        let at = PlannerCell { x, y: 1 };
+        let result = planner_observe_cells(ready, at, seen.as_ptr(), seen.len());
+        assert_eq!(result, PlannerResult::Ok);
+    };
+    let waypoint = || {
+        let (mut is_there, mut at) = (false, PlannerCell { x: -1, y: -1 });
+        let result = planner_waypoint(ready, &mut is_there, &mut at);
+        assert_eq!(result, PlannerResult::Ok);
+        is_there.then_some((at.x, at.y))
+    };
+    let way = |room| {
+        let (mut cells, mut count) = ([CONFIG.start; 9], 0);
+        let result = planner_way(ready, cells.as_mut_ptr(), room, &mut count);
+        assert_eq!(result, PlannerResult::Ok);
+        let columns = cells[..count].iter().map(|cell| cell.x);
+        columns.collect::<Vec<_>>()
+    };
+    assert_eq!((waypoint(), way(9)), (None, vec![]));
+    look(1);
+    assert_eq!(tick(ready).kind, PlannerActionKind::Move);
+    assert_eq!(waypoint(), Some((5, 1)));
+    assert_eq!((way(9), way(2)), (vec![2, 3, 4, 5], vec![2, 3]));
+    look(4);
+    assert_eq!((waypoint(), way(9)), (Some((5, 1)), vec![5]));
+    assert_eq!(status(ready).goal, PlannerCell { x: 5, y: 1 });
 }

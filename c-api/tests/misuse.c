@@ -56,6 +56,8 @@ static void nothing_is_created(Planner *planner) {
     CHECK(planner_row(planner, 5, frame, sizeof frame, &length), wanted);
     CHECK(planner_is_mute(planner, &is_mute), wanted);
     PlannerCell shut[PLANNER_MAX_SHUT];
+    CHECK(planner_waypoint(planner, &is_mute, shut), wanted);
+    CHECK(planner_way(planner, shut, PLANNER_MAX_SHUT, &length), wanted);
     CHECK(planner_shut(planner, &known, shut, PLANNER_MAX_SHUT, &length), wanted);
 }
 

@@ -68,6 +68,9 @@
 //!     round, or begins the next one.
 //! - *A step is vetoed* (`ahead`): the last look saw something there. It waits 8 ticks at
 //!   most; what then is still seen counts as a refusal, which lowers 2, or the step is tried.
+//! - *A pose that no report told* (`way`) leads on along the way, which lowers 4; or back to
+//!   it, by two steps at most, or the plan is dropped: whoever moves the robot so for ever
+//!   lets it go on for ever.
 //! - *A step* lowers 4 ([`Motion::Moved`]) or 2 ([`Motion::Blocked`]); if it was held
 //!   ([`Motion::Held`]), the robot counts up to [`Config::holds`] until it made a step, and
 //!   takes the last one for a refusal.
@@ -120,6 +123,7 @@ mod queue;
 mod stopping;
 mod surroundings;
 mod wave;
+mod way;
 mod window;
 
 pub use evidence::{SensorModel, Votes};
@@ -461,12 +465,15 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         if self.is_astray {
             return Learnt::default();
         }
-        let is_carried = centre != self.around.position;
-        if is_carried {
-            // The way starts somewhere else now.
+        let mut is_carried = false;
+        if centre != self.around.position {
+            is_carried = !self.follow(centre);
             self.around.position = centre;
-            self.role.plan = None;
+            self.stepping = false;
             self.looks = 0;
+        }
+        if is_carried {
+            self.role.plan = None;
         }
         let learnt = self.look_around(sighting);
         if is_carried && learnt.anything() {
@@ -567,6 +574,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn waiting(&self) -> Option<Wait> {
         self.waiting.get()
+    }
+
+    fn waypoint(&self) -> Option<Cell> {
+        self.straight().map(|(cell, _)| cell)
     }
 
     fn resume(&mut self) {

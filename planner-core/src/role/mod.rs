@@ -80,8 +80,7 @@ impl Role {
 
     /// The first steps of the way that it is committed to, at most 256.
     pub fn way(&self) -> impl Iterator<Item = Direction> + use<> {
-        let mut path = self.plan.map_or(Path::new(), |plan| plan.path);
-        core::iter::from_fn(move || path.pop_front())
+        self.plan.map_or(Path::new(), |plan| plan.path).steps()
     }
 
     /// Changes to a longer plan since the role last learnt anything.

@@ -74,6 +74,12 @@ impl Path {
         (self.length > 0).then(|| Direction::from_index(byte >> ((self.first & 3) * 2)))
     }
 
+    /// All of its steps.
+    pub(crate) fn steps(self) -> impl Iterator<Item = Direction> {
+        let mut path = self;
+        core::iter::from_fn(move || path.pop_front())
+    }
+
     pub(crate) fn pop_front(&mut self) -> Option<Direction> {
         let step = self.first()?;
         self.first = self.first.wrapping_add(1);

@@ -94,6 +94,8 @@ typedef enum {
   // The memory is smaller than a planner of this library: the header was included for
   // another size than the library was built for.
   PLANNER_RESULT_MEMORY = 20,
+  // The clearance is above 3.
+  PLANNER_RESULT_CLEARANCE = 21,
 } PlannerResult;
 
 // What the robot shall do.
@@ -248,6 +250,9 @@ typedef struct {
   // Ticks after which a robot that is done looks again at places that were free and are
   // walls now, instead of stopping; 0: it stops.
   uint16_t patrol_ticks;
+  // Cells that the robot's body reaches beyond the one of its centre, in a disc: 0 to 3,
+  // the same for all robots. Looks have to show what is within `clearance` + 2 cells.
+  uint8_t clearance;
 } PlannerConfig;
 
 // A direction relative to the heading, as a vector of length 1; `planner_bearing` makes

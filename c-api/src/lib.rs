@@ -11,7 +11,7 @@ mod place;
 mod queries;
 mod types;
 
-use planner_core::explorer::{Config, Explorer};
+use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
@@ -81,6 +81,10 @@ pub extern "C" fn planner_create(
         let mut explorer = Config::new();
         explorer.sensor = config.sensor().ok_or(PlannerResult::Sensor)?;
         explorer.patrol = config.patrol_ticks;
+        if config.clearance > MAX_CLEARANCE {
+            return Err(PlannerResult::Clearance);
+        }
+        explorer.clearance = config.clearance;
         explorer.link = LinkConfig {
             origin_mm: (config.origin_x_mm, config.origin_y_mm),
             cell_mm: config.cell_mm,

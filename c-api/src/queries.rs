@@ -216,7 +216,7 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
 }
 
 /// By [`PlannerResult`].
-pub(crate) const RESULTS: [&CStr; 21] = [
+pub(crate) const RESULTS: [&CStr; 22] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
@@ -238,6 +238,7 @@ pub(crate) const RESULTS: [&CStr; 21] = [
     c"frame: another robot has this id",
     c"no such sensor",
     c"header and library are of different sizes",
+    c"no such clearance",
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop).

@@ -21,6 +21,7 @@ const CONFIG: PlannerConfig = PlannerConfig {
     margin: 0,
     sure_range: 0,
     patrol_ticks: 0,
+    clearance: 0,
 };
 
 const SIZE: usize = size_of::<Planner>();
@@ -631,6 +632,13 @@ fn a_sensor_is_one_of_the_constants_and_its_margin_three_at_most() {
             result,
             "{sensor}, {margin}"
         );
+    }
+    for (clearance, result) in [(3, PlannerResult::Ok), (4, PlannerResult::Clearance)] {
+        let config = PlannerConfig {
+            clearance,
+            ..CONFIG
+        };
+        assert_eq!(planner_create(place, SIZE, &config), result);
     }
 }
 

@@ -54,6 +54,8 @@ pub enum PlannerResult {
     /// The memory is smaller than a planner of this library: the header was included for
     /// another size than the library was built for.
     Memory = 20,
+    /// The clearance is above 3.
+    Clearance = 21,
 }
 
 impl From<FrameError> for PlannerResult {
@@ -185,6 +187,9 @@ pub struct PlannerConfig {
     /// Ticks after which a robot that is done looks again at places that were free and are
     /// walls now, instead of stopping; 0: it stops.
     pub patrol_ticks: u16,
+    /// Cells that the robot's body reaches beyond the one of its centre, in a disc: 0 to 3,
+    /// the same for all robots. Looks have to show what is within `clearance` + 2 cells.
+    pub clearance: u8,
 }
 
 /// How far the looks of a sensor can be believed.

@@ -95,6 +95,9 @@ static void all_refused(Planner *planner) {
     config.sensor = PLANNER_SENSOR_LIDAR;
     config.margin = 4;
     refused(planner, config, PLANNER_RESULT_SENSOR);
+    config = usual();
+    config.clearance = 4;
+    refused(planner, config, PLANNER_RESULT_CLEARANCE);
 }
 
 static void a_failed_create_changes_nothing(Planner *planner) {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use planner_core::explorer::{bodies_touch, body_cells};
 use planner_core::tile::TileIndex;
 use planner_core::{Action, AnyPlanner, Cell, Direction, Motion, RobotId, TileSet, Wait, role};
 
@@ -10,18 +11,31 @@ use crate::robot::{Deed, Robot, Sent, Step, Violation};
 use crate::scenario::{Event, Faults, Trouble};
 use crate::senses::Senses;
 use crate::sensor::Sensor;
+use serde::Serialize;
 
 /// How the robots of a fleet share the world.
 #[derive(Clone, Debug, Default)]
 pub struct Rules {
     /// Whether a cell holds at most one robot.
     pub solid: bool,
+    /// Cells that bodies reach beyond the one of their centre.
+    pub clearance: u8,
     /// What goes wrong.
     pub faults: Faults,
     /// How the world misleads robots.
     pub trouble: Trouble,
     /// Seed of that.
     pub seed: u64,
+}
+
+/// Steps in which bodies would have touched: none was made. Anything but none is a bug of a
+/// planner that knew better.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Touches {
+    /// With an obstacle, a person or a shut door.
+    pub walls: u32,
+    /// With another robot.
+    pub bodies: u32,
 }
 
 /// Makes the planner of a robot that stands on a cell and knows nothing.
@@ -37,6 +51,7 @@ pub struct Fleet<const TW: usize, const TH: usize> {
     robots: Vec<Robot<TW, TH>>,
     violations: Vec<Violation>,
     bumps: u32,
+    touches: Touches,
     all_tiles: TileSet<TH>,
     tick: u32,
 }
@@ -77,6 +92,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             robots,
             violations: Vec::new(),
             bumps: 0,
+            touches: Touches::default(),
             all_tiles,
             tick: 0,
         }
@@ -123,6 +139,11 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     /// hidden.
     pub fn bumps(&self) -> u32 {
         self.bumps
+    }
+
+    /// Steps so far in which bodies would have touched.
+    pub fn touches(&self) -> Touches {
+        self.touches
     }
 
     /// Whether every living robot has stopped, and none is still to come or to go on.
@@ -215,10 +236,37 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         }
     }
 
+    /// A body steps, unless it would touch something.
+    fn go_wide(&mut self, index: usize, to: Cell) -> Motion {
+        let clearance = self.rules.clearance;
+        let cells = body_cells(clearance, to);
+        let world = self.senses.sensor().world();
+        let wall = { cells }.find(|cell| !world.is_free(*cell) || self.senses.is_taken(*cell));
+        if let Some(cell) = wall {
+            self.touches.walls += 1;
+            self.can_be_entered(index, cell);
+            return Motion::Blocked;
+        }
+        let others = self.robots.iter().filter(|other| other.is_there);
+        let touches = |other: &Robot<TW, TH>| bodies_touch(clearance, to, other.position);
+        if { others }.any(|other| usize::from(other.id.0) != index && touches(other)) {
+            self.touches.bodies += 1;
+            return Motion::Held;
+        }
+        match self.can_be_entered(index, to) {
+            true => Motion::Moved,
+            false => Motion::Blocked,
+        }
+    }
+
     fn go(&mut self, index: usize, direction: Direction) -> Deed {
         let to = self.robots[index].position.step(direction);
-        let holder = self.rules.solid.then(|| self.holder(to)).flatten();
+        let is_wide = self.rules.clearance > 0;
+        let holder = (self.rules.solid && !is_wide)
+            .then(|| self.holder(to))
+            .flatten();
         let motion = match holder {
+            _ if is_wide => self.go_wide(index, to),
             _ if !self.can_be_entered(index, to) => Motion::Blocked,
             None => Motion::Moved,
             Some(holder) => match self.exchange_roles(index, holder) {

@@ -56,6 +56,8 @@ pub struct Setup {
     pub link: LinkConfig,
     /// What it takes its sensor for, if it [weighs looks](PlannerKind::weighs_looks).
     pub sensor: SensorModel,
+    /// Cells that its body reaches beyond its own, if it [has a body](PlannerKind::has_body).
+    pub clearance: u8,
 }
 
 impl PlannerKind {
@@ -80,10 +82,20 @@ impl PlannerKind {
         self == Self::Explorer
     }
 
+    /// Whether it can plan for a body that is wider than a cell.
+    pub fn has_body(self) -> bool {
+        self == Self::Explorer
+    }
+
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
-        let Setup { link, sensor, .. } = setup;
+        let Setup {
+            link,
+            sensor,
+            clearance,
+            ..
+        } = setup;
         let local_frontiers = |second_chance| {
             PlannerConfig::LocalFrontiers(local_frontiers::Config {
                 second_chance,
@@ -95,6 +107,7 @@ impl PlannerKind {
             Self::Explorer => Some(PlannerConfig::Explorer(explorer::Config {
                 link,
                 sensor,
+                clearance,
                 ..explorer::Config::new()
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use host_sim::draw;
+use host_sim::fleet::Touches;
 use host_sim::planners::{PlannerKind, Setup};
 use host_sim::record::grid::Trace;
 use host_sim::robot::Deed;
@@ -15,8 +16,8 @@ use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::radio::{FrameError, Heard, MAX_LEN};
 use planner_core::{
-    Action, AnyPlanner, Cell, Contact, Direction, Inspect, Learnt, Map, Motion, Planner, RobotId,
-    Sighting, Status, TileSet, Wait,
+    Action, AnyPlanner, Cell, Contact, Direction, Extent, Inspect, Learnt, Map, Motion, Planner,
+    RobotId, Sighting, Status, Stop, TileSet, Wait,
 };
 
 fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
@@ -437,4 +438,77 @@ fn a_scenario_out_of_range_is_an_error() {
             ..
         }
     ));
+}
+
+/// Bodies touch nothing, sweep everything, and where one gives up it names another.
+#[test]
+fn bodies_of_every_size_explore_halls_and_caves() {
+    for (clearance, family, robots) in [
+        (1, Family::Rooms, 1),
+        (1, Family::Cave, 3),
+        (2, Family::Rooms, 3),
+        (2, Family::Cave, 1),
+        (3, Family::IsolatedBlocks, 2),
+    ] {
+        let small = generate(family, 31, 24, 7).unwrap();
+        // Each cell becomes so many that doors are wide enough.
+        let zoom = 2 * i16::from(clearance) + 1;
+        let extent = Extent::new(31 * zoom as u16, 24 * zoom as u16);
+        let is_blocked = |cell: Cell| !small.is_free(Cell::new(cell.x / zoom, cell.y / zoom));
+        let world = Arc::new(World::from_fn("wide", extent, is_blocked).unwrap());
+        let starts = world.place_bodies(robots, &Starts::Spread(1), clearance);
+        let mut scenario = Scenario::new(world, starts.unwrap(), PlannerKind::Explorer);
+        scenario.clearance = clearance;
+        let (outcome, _) = run(&scenario);
+        let what = format!("{clearance} in {family}, {robots}");
+        assert_eq!(outcome.touches, Touches::default(), "{what}");
+        assert!(outcome.is_complete(), "{what}");
+        assert!(outcome.ticks_to_stopped.is_some(), "{what}");
+        for robot in &outcome.robots {
+            let stop = robot.stop.expect("all have stopped");
+            let is_held = matches!(stop, Stop::Held { .. }) && robots > 1;
+            assert!(stop.is_complete() || is_held, "{what}: {stop}");
+            assert!(!robot.claims_falsely(), "{what}: {stop}");
+        }
+    }
+}
+
+#[test]
+fn bodies_start_where_they_have_room() {
+    let world = Arc::new(generate(Family::Rooms, 31, 24, 7).unwrap());
+    let first = world.free_cells().next().unwrap();
+    let mut scenario = Scenario::new(world.clone(), vec![first], PlannerKind::Explorer);
+    scenario.clearance = 1;
+    assert!(matches!(
+        scenario.check(),
+        Err(ScenarioError::NoRoomAtStart { robot: 0, .. })
+    ));
+    let together = world.place_bodies(2, &Starts::Center, 1).unwrap();
+    scenario.starts = together.clone();
+    assert!(scenario.check().is_ok());
+    scenario.starts = vec![together[0]; 2];
+    assert!(matches!(
+        scenario.check(),
+        Err(ScenarioError::TouchingStarts {
+            first: 0,
+            second: 1,
+            apart: 3
+        })
+    ));
+    scenario.starts = together;
+    scenario.range = 2;
+    assert!(
+        scenario
+            .check()
+            .unwrap_err()
+            .to_string()
+            .contains("--range")
+    );
+    scenario.planner = PlannerKind::Closest;
+    assert!(matches!(
+        scenario.check(),
+        Err(ScenarioError::NoBody { .. })
+    ));
+    assert!(world.place_bodies(1, &Starts::At(vec![first]), 1).is_err());
+    assert!(world.place_bodies(90, &Starts::Center, 1).is_err());
 }

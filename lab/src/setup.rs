@@ -30,6 +30,8 @@ pub struct Setup {
     pub fov: u16,
     /// A cell holds at most one robot.
     pub solid: bool,
+    /// Cells that their bodies reach beyond the one of their centre.
+    pub clearance: u8,
     /// What all worlds share. No `max_ticks`, 0: as many as the map needs.
     pub conditions: Conditions,
 }
@@ -44,6 +46,7 @@ impl Default for Setup {
             range: 5,
             fov: ALL_AROUND,
             solid: false,
+            clearance: 0,
             conditions: Conditions {
                 medium: MediumKind::Radio,
                 ..Conditions::new(1, 0)
@@ -63,13 +66,16 @@ impl Setup {
             .starts
             .clone()
             .unwrap_or_else(|| world.default_starts());
-        let starts = world
-            .place(self.robots.into(), &starts, self.solid)
-            .map_err(|error| error.to_string())?;
+        let starts = match self.clearance {
+            0 => world.place(self.robots.into(), &starts, self.solid),
+            clearance => world.place_bodies(self.robots.into(), &starts, clearance),
+        };
+        let starts = starts.map_err(|error| error.to_string())?;
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.fov = self.fov;
         scenario.solid = self.solid;
+        scenario.clearance = self.clearance;
         let max_ticks = match self.conditions.max_ticks {
             0 => scenario.conditions.max_ticks,
             given => given,
@@ -95,6 +101,7 @@ impl Setup {
             range: scenario.range,
             fov: scenario.fov,
             solid: scenario.solid,
+            clearance: scenario.clearance,
             conditions: Conditions {
                 max_ticks: if is_usual { 0 } else { max_ticks },
                 ..scenario.conditions.clone()
@@ -136,6 +143,7 @@ impl Setup {
         say(self.range != usual.range, "range", self.range.to_string());
         say(self.fov != usual.fov, "fov", self.fov.to_string());
         say(self.solid, "solid", String::new());
+        say(self.clearance > 0, "clearance", self.clearance.to_string());
         settings.extend(self.conditions.settings(&usual.conditions));
         settings
     }
@@ -222,6 +230,7 @@ impl Setup {
                 "range" => setup.range = value.parse().map_err(|_| wrong())?,
                 "fov" => setup.fov = value.parse().map_err(|_| wrong())?,
                 "solid" => setup.solid = true,
+                "clearance" => setup.clearance = value.parse().map_err(|_| wrong())?,
                 _ => setup.conditions.set(name, value).ok_or_else(wrong)?,
             }
         }
@@ -289,6 +298,7 @@ mod tests {
             range: 6,
             fov: ALL_AROUND,
             solid: true,
+            clearance: 0,
             conditions: Conditions {
                 medium: MediumKind::Radio,
                 sync: 3,
@@ -346,7 +356,12 @@ mod tests {
             ..Setup::default()
         };
         assert!(narrow.command().ends_with(" --fov 62"));
-        for setup in [Setup::default(), unusual(), given, narrow] {
+        let wide = Setup {
+            clearance: 2,
+            ..Setup::default()
+        };
+        assert!(wide.command().ends_with(" --clearance 2"));
+        for setup in [Setup::default(), unusual(), given, narrow, wide] {
             let back = Setup::from_address(&setup.address()).unwrap();
             assert_eq!(back.address(), setup.address());
             assert_eq!(back, setup);

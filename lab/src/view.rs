@@ -583,6 +583,7 @@ fn obstructions(frame: &Frame<'_>, place: &Place, colors: &Colors) -> Vec<Shape>
 
 fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, colors: &Colors) {
     let radius = place.robot();
+    let clearance = frame.watch.scenario().clearance;
     let state = frame.watch.state();
     let records = frame.watch.last_records();
     for (robot, cell) in frame.watch.positions().into_iter().enumerate() {
@@ -597,6 +598,15 @@ fn paint_robots(painter: &egui::Painter, frame: &Frame<'_>, place: &Place, color
         }
         let middle = place.middle(cell);
         let color = colors.robot(robot);
+        if clearance > 0 {
+            let reach = place.scale * (f32::from(clearance) + 0.5);
+            painter.circle(
+                middle,
+                reach,
+                color.gamma_multiply(0.2),
+                Stroke::new(1.0, color),
+            );
+        }
         if lives {
             // Two discs are two quads each; a disc with an edge is dozens of triangles.
             painter.circle_filled(middle, radius + 0.5, colors.ink);

@@ -140,7 +140,7 @@ impl Watch {
     fn with(scenario: Scenario, sensor: Arc<Sensor>, source: Source) -> Self {
         let cells = scenario.world.extent().cells() as usize;
         Self {
-            reachable: scenario.world.reachable(&scenario.starts),
+            reachable: scenario.reachable(),
             history: History {
                 first: vec![0],
                 seen_since: vec![NEVER; cells],

@@ -229,6 +229,13 @@ pub trait Inspect<const TW: usize, const TH: usize>: Planner<TW, TH> {
         0
     }
 
+    /// Known free cells that the robot's body covers from nowhere, as far as is known: niches
+    /// and gaps that are too narrow for it. 0 for a robot that is not wider than a cell. Work:
+    /// the whole map, about 2,000 instructions for each free cell; for a stop.
+    fn narrow_cells(&self) -> u32 {
+        0
+    }
+
     /// The cells of a tile that the search over the whole map has reached, for
     /// displays; none if no search is under way, or this planner does not tell.
     fn searched(&self, at: TileIndex) -> u64 {

@@ -54,6 +54,10 @@ pub(crate) struct Explore {
     /// A cell holds at most one robot.
     #[arg(long)]
     solid: bool,
+    /// Robots are discs that reach N cells beyond the one of their centre, 0 to 3, and touch
+    /// nothing. For the explorer alone; robots that start together start beside each other.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(..=3))]
+    clearance: u8,
     /// Images: N×N pixels are one cell.
     #[arg(long, value_name = "N", conflicts_with = "cell_size", value_parser = clap::value_parser!(u32).range(1..))]
     pixels_per_cell: Option<u32>,
@@ -122,7 +126,7 @@ impl Explore {
         let scenario = self.scenario(world)?;
         let mut folder = self.output.folder(scenario.world.name())?;
 
-        let cells = scenario.world.reachable(&scenario.starts).count();
+        let cells = scenario.reachable().count();
         let bar = self.output.bar(cells, "cells");
         let mut advance = |progress: Progress| {
             bar.set_position(progress.seen_cells.into());
@@ -191,11 +195,15 @@ impl Explore {
 
     fn scenario(&self, world: Arc<World>) -> Result<Scenario, Box<dyn Error>> {
         let starts = self.starts(&world)?;
-        let starts = world.place(self.robots.into(), &starts, self.solid)?;
+        let starts = match self.clearance {
+            0 => world.place(self.robots.into(), &starts, self.solid)?,
+            clearance => world.place_bodies(self.robots.into(), &starts, clearance)?,
+        };
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.fov = self.fov;
         scenario.solid = self.solid;
+        scenario.clearance = self.clearance;
         scenario.conditions.medium = MediumKind::Radio;
         scenario.conditions.seed = SEED;
         self.conditions.clone().set(&mut scenario.conditions)?;

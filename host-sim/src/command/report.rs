@@ -56,6 +56,12 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             summary.bumps
         );
     }
+    if let Some(body) = &summary.body {
+        println!(
+            "  touches            {} of walls, {} of bodies; no body fits into {} free cells that were seen",
+            body.touches.walls, body.touches.bodies, body.narrow_cells
+        );
+    }
     for (number, robot) in summary.robots.iter().enumerate() {
         for doubt in doubts(robot) {
             println!("  robot {number:<3} {doubt}");

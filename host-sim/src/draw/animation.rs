@@ -4,10 +4,11 @@ use std::io::Write;
 
 use gif::{Encoder, Frame, Repeat};
 use image::{GenericImageView, Rgb, RgbImage};
+use planner_core::explorer::body_cells;
 use planner_core::{Cell, Extent};
 
 use super::DrawError;
-use super::paint::{Ground, INK, rgb, robot_color};
+use super::paint::{Ground, INK, pale, rgb, robot_color};
 use super::replay::Replay;
 use crate::record::grid::Trace;
 use crate::world::cells;
@@ -140,6 +141,8 @@ fn screen(replay: &Replay<'_>) -> RgbImage {
     // Robots at least five pixels wide, so that they can be seen on large maps.
     let grow = 5u32.saturating_sub(scale).div_ceil(2);
     for (robot, &cell) in replay.positions().iter().enumerate() {
+        let body = body_cells(replay.clearance(), cell);
+        body.for_each(|cell| fill(cell, 0, pale(robot_color(robot))));
         fill(cell, grow, rgb(robot_color(robot)));
     }
     let seen = u64::from(width) * u64::from(replay.seen_cells());

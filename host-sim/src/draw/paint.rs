@@ -82,6 +82,11 @@ pub(super) fn robot_color(robot: usize) -> RGBColor {
     ROBOTS[robot % ROBOTS.len()]
 }
 
+/// The colour of what belongs to something of that colour, and is less.
+pub(super) fn pale(RGBColor(red, green, blue): RGBColor) -> Rgb<u8> {
+    Rgb([red, green, blue].map(|of| 255 - (255 - of) / 2))
+}
+
 /// Robots with a colour of their own.
 pub(super) const ROBOT_COLORS: usize = ROBOTS.len();
 

@@ -164,6 +164,16 @@ impl Frame {
         replay: &Replay<'_>,
     ) -> Result<(), DrawError> {
         let radius = (self.scale * 2 / 5).clamp(3, 7);
+        let clearance = i32::from(trace.scenario.clearance);
+        if clearance > 0 {
+            let reach = self.scale * (2 * clearance + 1) / 2;
+            for (robot, &end) in replay.positions().iter().enumerate() {
+                let color = robot_color(robot);
+                let body = self.middle(end);
+                area.draw(&Circle::new(body, reach, color.mix(0.25).filled()))?;
+                area.draw(&Circle::new(body, reach, color.stroke_width(1)))?;
+            }
+        }
         for (robot, (&start, &end)) in trace
             .scenario
             .starts
@@ -213,8 +223,12 @@ pub(super) fn title(trace: &Trace) -> String {
         trouble if trouble.is_none() => String::new(),
         trouble => format!(", {trouble}"),
     };
+    let body = match scenario.clearance {
+        0 => String::new(),
+        clearance => format!(", clearance {clearance}"),
+    };
     format!(
-        "{} ({} cells), {} × {}, range {} cells, {radio}{trouble}",
+        "{} ({} cells), {} × {}, range {} cells{body}, {radio}{trouble}",
         scenario.world.name(),
         scenario.world.extent(),
         scenario.starts.len(),

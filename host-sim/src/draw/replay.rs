@@ -33,7 +33,7 @@ impl<'a> Replay<'a> {
         Self {
             trace,
             senses: Senses::of(scenario, scenario.sensor()),
-            reachable: world.reachable(&scenario.starts),
+            reachable: scenario.reachable(),
             seen: vec![false; world.extent().cells() as usize],
             seen_cells: 0,
             mistaken: vec![false; world.extent().cells() as usize],
@@ -115,6 +115,11 @@ impl<'a> Replay<'a> {
     /// Cells that can be reached.
     pub fn reachable_cells(&self) -> u32 {
         self.reachable.count()
+    }
+
+    /// Cells that bodies reach beyond the one of their centre.
+    pub(super) fn clearance(&self) -> u8 {
+        self.trace.scenario.clearance
     }
 
     pub(super) fn extent(&self) -> Extent {

@@ -97,6 +97,7 @@ fn explore(
             start,
             link: LinkConfig::new(),
             sensor: SensorModel::truthful(),
+            clearance: 0,
         };
         PlannerKind::Explorer
             .build(setup)

@@ -174,6 +174,7 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
                 start: place.start,
                 link: options.link,
                 sensor: options.preset.model(),
+                clearance: 0,
             })
             .map_err(|error| LiveError::Place {
                 address: options.world,

@@ -88,7 +88,7 @@ proptest! {
         let fleet = |medium| {
             let extent = world.extent();
             let planners = Box::new(move |id, start| {
-                planner.build(Setup { id, extent, start, link: LinkConfig::new(), sensor: SensorModel::truthful() }).unwrap()
+                planner.build(Setup { id, extent, start, link: LinkConfig::new(), sensor: SensorModel::truthful(), clearance: 0 }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
             Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), planners, &starts)
@@ -206,6 +206,7 @@ fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
             start,
             link,
             sensor: SensorModel::truthful(),
+            clearance: 0,
         };
         PlannerKind::Explorer.build(setup).unwrap()
     });

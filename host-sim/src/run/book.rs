@@ -8,7 +8,7 @@ use planner_core::{Cell, Direction, Map};
 use super::claims::wrong;
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
-use crate::fleet::Fleet;
+use crate::fleet::{Fleet, Touches};
 use crate::record::grid::{Record, Trace};
 use crate::robot::{Deed, Robot, Sent};
 use crate::scenario::grid::Scenario;
@@ -29,7 +29,7 @@ pub(super) struct Book {
 impl Book {
     pub(super) fn new(scenario: &Scenario, sensor: Arc<Sensor>, trace: bool) -> Self {
         let robots = scenario.starts.len();
-        let reachable = scenario.world.reachable(&scenario.starts);
+        let reachable = scenario.reachable();
         let outcome = Outcome {
             ticks: 0,
             ticks_to_seen: None,
@@ -51,6 +51,7 @@ impl Book {
                     cells_unnamed: 0,
                     cells_closed: 0,
                     cells_opened: 0,
+                    cells_narrow: 0,
                     cells_unheard: 0,
                     work: 0,
                     sent: Sent::default(),
@@ -63,6 +64,7 @@ impl Book {
             ],
             bumps: 0,
             violations: Vec::new(),
+            touches: Touches::default(),
         };
         Self {
             coverage: Coverage::new(&scenario.world, &reachable, robots),
@@ -151,6 +153,7 @@ impl Book {
         outcome.shared_cells = self.coverage.shared_cells();
         outcome.bumps = fleet.bumps();
         outcome.violations = fleet.violations().to_vec();
+        outcome.touches = fleet.touches();
         let unheard = unheard(fleet);
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
@@ -159,7 +162,9 @@ impl Book {
             noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
-            let wrong = wrong(&scenario.world, &self.reachable, robot, start);
+            noted.cells_narrow = robot.planner.narrow_cells();
+            let own = || scenario.world.reachable_by(&[start], scenario.clearance);
+            let wrong = wrong(&scenario.world, &self.reachable, robot, own);
             noted.cells_missed = wrong.missed;
             noted.cells_unnamed = wrong.unnamed;
             noted.cells_closed = wrong.closed;

@@ -18,13 +18,13 @@ pub(super) struct Wrong {
     pub(super) opened: u32,
 }
 
-/// What is wrong with the map of a robot that started on `start`, in a world of which
+/// What is wrong with the map of a robot that can reach `own` cells of a world of which
 /// robots can reach `all`.
 pub(super) fn wrong<const TW: usize, const TH: usize>(
     world: &World,
     all: &Reachable,
     robot: &Robot<TW, TH>,
-    start: Cell,
+    own: impl FnOnce() -> Reachable,
 ) -> Wrong {
     let map = robot.planner.map();
     let opened = cells(world.extent()).filter(|&cell| !world.is_free(cell) && map.is_free(cell));
@@ -35,7 +35,7 @@ pub(super) fn wrong<const TW: usize, const TH: usize>(
             ..Wrong::default()
         };
     }
-    let own = world.reachable(&[start]);
+    let own = own();
     let count = |is_so: &dyn Fn(Cell) -> bool| own.cells().filter(|&cell| is_so(cell)).count();
     let is_missed = |cell| !map.is_known(cell);
     let missed = count(&is_missed) as u32;

@@ -126,13 +126,14 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
 ) -> Fleet<TW, TH> {
     let rules = Rules {
         solid: scenario.solid,
+        clearance: scenario.clearance,
         faults: scenario.conditions.faults.clone(),
         trouble: scenario.conditions.trouble,
         seed: scenario.conditions.seed,
     };
     let link = scenario.conditions.link();
     let sensor_model = scenario.conditions.preset.model();
-    let (host, kind) = (host.clone(), scenario.planner);
+    let (host, kind, clearance) = (host.clone(), scenario.planner, scenario.clearance);
     let extent = scenario.world.extent();
     // Robots that work by marks share them, and meet where the first one starts.
     let marks = match (kind, scenario.starts.first()) {
@@ -150,6 +151,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
             start,
             link,
             sensor: sensor_model,
+            clearance,
         };
         host.planner(kind, setup)
     });

@@ -3,6 +3,7 @@
 use planner_core::Stop;
 use planner_core::radio::Hearsay;
 
+use crate::fleet::Touches;
 use crate::robot::{Sent, Violation};
 
 /// What happened in a run.
@@ -34,6 +35,8 @@ pub struct Outcome {
     pub bumps: u32,
     /// Moves into obstacles that no look had hidden. Anything but none is a bug of a planner.
     pub violations: Vec<Violation>,
+    /// Steps in which bodies would have touched.
+    pub touches: Touches,
 }
 
 /// What happened to one robot.
@@ -59,6 +62,8 @@ pub struct RobotOutcome {
     pub cells_closed: u32,
     /// Obstacles that are free on its own map.
     pub cells_opened: u32,
+    /// Known free cells that its body covers from nowhere.
+    pub cells_narrow: u32,
     /// Cells that another living robot's map holds and its own lacks, if it lives.
     pub cells_unheard: u32,
     /// Work of its planner over the run.
@@ -127,9 +132,10 @@ impl Outcome {
         Some(self.coverage.iter().position(reached)? as u32)
     }
 
-    /// Whether every reachable cell was seen by somebody, without a violation.
+    /// Whether every reachable cell was seen by somebody, without a violation or a touch.
     pub fn is_complete(&self) -> bool {
-        self.ticks_to_seen.is_some() && self.violations.is_empty()
+        let is_clean = self.violations.is_empty() && self.touches == Touches::default();
+        self.ticks_to_seen.is_some() && is_clean
     }
 
     /// Whether all living robots know the same cells in the end.

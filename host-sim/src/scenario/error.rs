@@ -52,6 +52,29 @@ pub enum ScenarioError {
         second: usize,
         start: Cell,
     },
+    #[error(
+        "--clearance {clearance}: planner {planner} plans for robots that are no wider than a \
+         cell; the explorer does not"
+    )]
+    NoBody { planner: PlannerKind, clearance: u8 },
+    #[error(
+        "robot {robot} has no room at its start {start} with --clearance {clearance}; start it \
+         elsewhere (--start spread), or take a smaller clearance or smaller cells"
+    )]
+    NoRoomAtStart {
+        robot: usize,
+        start: Cell,
+        clearance: u8,
+    },
+    #[error(
+        "robots {first} and {second} touch where they start; bodies have to be {apart} cells \
+         apart: start them elsewhere (--start spread)"
+    )]
+    TouchingStarts {
+        first: usize,
+        second: usize,
+        apart: u8,
+    },
     #[error("--{option} {cell}: outside of the map of {extent} cells")]
     FaultOutside {
         option: &'static str,

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use planner_core::explorer::{MAX_CLEARANCE, bodies_touch};
 use planner_core::{Cell, sight};
 
 use super::{Conditions, Preset, ScenarioError};
@@ -26,6 +27,9 @@ pub struct Scenario {
     pub fov: u16,
     /// Whether a cell holds at most one robot.
     pub solid: bool,
+    /// Cells that the robots' bodies reach beyond the one of their centre, 0 to 3; see
+    /// [`Config::clearance`](planner_core::explorer::Config::clearance).
+    pub clearance: u8,
     /// What all worlds share.
     pub conditions: Conditions,
 }
@@ -43,6 +47,7 @@ impl Scenario {
             range: 5,
             fov: ALL_AROUND,
             solid: false,
+            clearance: 0,
             conditions: Conditions::new(0, max_ticks),
         }
     }
@@ -74,6 +79,7 @@ impl Scenario {
                 preset,
             });
         }
+        self.check_body()?;
         self.check_fault_cells()?;
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
@@ -90,6 +96,57 @@ impl Scenario {
             }
         }
         Ok(())
+    }
+
+    fn check_body(&self) -> Result<(), ScenarioError> {
+        let clearance = self.clearance;
+        if clearance == 0 {
+            return Ok(());
+        }
+        if clearance > MAX_CLEARANCE {
+            let expected = format!("0 to {MAX_CLEARANCE} cells");
+            return Err(ScenarioError::setting("clearance", clearance, expected));
+        }
+        if !self.planner.has_body() {
+            return Err(ScenarioError::NoBody {
+                planner: self.planner,
+                clearance,
+            });
+        }
+        if self.range < clearance + 2 {
+            return Err(ScenarioError::setting(
+                "range",
+                self.range,
+                format!(
+                    "{} cells or more, with --clearance {clearance}",
+                    clearance + 2
+                ),
+            ));
+        }
+        for (robot, &start) in self.starts.iter().enumerate() {
+            if !self.world.has_room(start, clearance) {
+                return Err(ScenarioError::NoRoomAtStart {
+                    robot,
+                    start,
+                    clearance,
+                });
+            }
+            let others = self.starts[..robot].iter();
+            if let Some(first) = { others }.position(|&other| bodies_touch(clearance, start, other))
+            {
+                return Err(ScenarioError::TouchingStarts {
+                    first,
+                    second: robot,
+                    apart: 2 * clearance + 1,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// What its robots can reach: with a body, the cells that it can sweep.
+    pub fn reachable(&self) -> Reachable {
+        self.world.reachable_by(&self.starts, self.clearance)
     }
 
     fn check_fault_cells(&self) -> Result<(), ScenarioError> {

@@ -4,6 +4,7 @@ use planner_core::radio::Hearsay;
 use serde::Serialize;
 
 use super::Head;
+use crate::fleet::Touches;
 use crate::measured::Measured;
 use crate::planners::PlannerKind;
 use crate::run::{Outcome, RobotOutcome};
@@ -40,11 +41,25 @@ pub struct Summary {
     pub fov: u16,
     /// Whether a cell held at most one robot.
     pub solid: bool,
+    /// What came of their bodies, if they are wider than a cell.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body: Option<BodySummary>,
     /// Robot by robot.
     pub robots: Vec<RobotSummary>,
     /// What the planners took, if they ran on chips.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub firmware: Option<Measured>,
+}
+
+/// What came of bodies that are wider than a cell.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct BodySummary {
+    /// Cells that each reaches beyond the one of its centre.
+    pub clearance: u8,
+    /// Steps in which they would have touched.
+    pub touches: Touches,
+    /// Free cells that robots know, at most, and that no body fits into.
+    pub narrow_cells: u32,
 }
 
 /// What one robot came to.
@@ -123,6 +138,14 @@ impl Summary {
             range: scenario.range,
             fov: scenario.fov,
             solid: scenario.solid,
+            body: (scenario.clearance > 0).then(|| BodySummary {
+                clearance: scenario.clearance,
+                touches: outcome.touches,
+                narrow_cells: { outcome.robots.iter() }
+                    .map(|robot| robot.cells_narrow)
+                    .max()
+                    .unwrap_or(0),
+            }),
             robots: scenario
                 .starts
                 .iter()

@@ -170,6 +170,17 @@ pub enum Problem {
     )]
     TooManyRobots { robots: usize, cells: usize },
 
+    #[error(
+        "start {start} has no room for a body of --clearance {clearance}; start elsewhere \
+         (--start spread), or take a smaller clearance or smaller cells"
+    )]
+    StartWithoutRoom { start: Cell, clearance: u8 },
+    #[error(
+        "has no room for {robots} bodies of --clearance {clearance} apart from each other; use \
+         fewer robots, a smaller clearance or smaller cells"
+    )]
+    NoRoom { robots: usize, clearance: u8 },
+
     #[error("{extent} cells are too few to generate; expected {smallest}×{smallest} or more")]
     TooSmall { extent: Extent, smallest: u16 },
     #[error("{name} {found}; expected {lowest} to {highest}")]

@@ -1,5 +1,6 @@
 //! Which cells can be reached.
 
+use planner_core::explorer::body_cells;
 use planner_core::{Cell, Extent};
 
 use super::World;
@@ -60,6 +61,31 @@ impl World {
     /// Blocked cells and cells outside in `from` add nothing.
     pub fn reachable(&self, from: &[Cell]) -> Reachable {
         Reachable::new(self, &self.grid.wave(from))
+    }
+
+    /// Whether a body with its centre in `cell` touches no obstacle, see
+    /// [`Config::clearance`](planner_core::explorer::Config::clearance).
+    pub fn has_room(&self, cell: Cell, clearance: u8) -> bool {
+        self.is_free(cell) && body_cells(clearance, cell).all(|cell| self.is_free(cell))
+    }
+
+    /// The cells that bodies sweep that start from `from`. A start without room adds nothing.
+    pub fn reachable_by(&self, from: &[Cell], clearance: u8) -> Reachable {
+        if clearance == 0 {
+            return self.reachable(from);
+        }
+        let centres = self.centres(clearance).wave(from);
+        let mut swept = Grid::filled(self.extent(), true);
+        for cell in centres.into_iter().flat_map(|at| body_cells(clearance, at)) {
+            swept.set_blocked(cell, false);
+        }
+        let cells: Vec<Cell> = swept.free_cells().collect();
+        Reachable::new(self, &cells)
+    }
+
+    /// The cells in which the centre of a body can be, as free.
+    pub(super) fn centres(&self, clearance: u8) -> Grid {
+        Grid::from_fn(self.extent(), |cell| !self.has_room(cell, clearance))
     }
 
     /// The largest 4-connected set of free cells; of equals the one that holds

@@ -1,6 +1,7 @@
 //! Where robots stand when a run begins.
 
 use planner_core::Cell;
+use planner_core::explorer::bodies_touch;
 
 use super::World;
 use super::error::{Problem, WorldError};
@@ -69,6 +70,38 @@ impl World {
                 }
                 .of(self.name())
             })?);
+        }
+        Ok(taken)
+    }
+
+    /// As [`place`](Self::place), for robots with bodies: where a body would touch an
+    /// obstacle or another one, the robot gets the nearest place (in steps) with room.
+    ///
+    /// # Errors
+    /// A start that is named and has no room; more bodies than fit.
+    pub fn place_bodies(
+        &self,
+        robots: usize,
+        starts: &Starts,
+        clearance: u8,
+    ) -> Result<Vec<Cell>, WorldError> {
+        let no_room = |robots| Problem::NoRoom { robots, clearance }.of(self.name());
+        if let Starts::At(cells) = starts
+            && let Some(&start) = cells.iter().find(|cell| !self.has_room(**cell, clearance))
+        {
+            self.check_start(start)
+                .map_err(|problem| problem.of(self.name()))?;
+            return Err(Problem::StartWithoutRoom { start, clearance }.of(self.name()));
+        }
+        let centres = self.centres(clearance);
+        let roomy = Self::from_grid(self.name(), centres).map_err(|_| no_room(1))?;
+        let mut taken: Vec<Cell> = Vec::with_capacity(robots);
+        for anchor in roomy.place(robots, starts, false)? {
+            let wave = roomy.grid.wave(&[anchor]);
+            let is_apart =
+                |cell: &Cell| taken.iter().all(|of| !bodies_touch(clearance, *cell, *of));
+            let free = wave.into_iter().find(is_apart);
+            taken.push(free.ok_or_else(|| no_room(robots))?);
         }
         Ok(taken)
     }

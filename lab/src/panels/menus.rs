@@ -11,6 +11,7 @@ use host_sim::sensor::ALL_AROUND;
 use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
 use planner_core::Extent;
+use planner_core::explorer::MAX_CLEARANCE;
 use planner_core::sight::MAX_RADIUS;
 
 use crate::app::App;
@@ -43,6 +44,9 @@ impl App {
         );
         if !setup.planner.turns_sensor() {
             setup.fov = ALL_AROUND;
+        }
+        if !setup.planner.has_body() {
+            setup.clearance = 0;
         }
         self.rival(ui);
         title(ui, "Radio");
@@ -471,6 +475,9 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     ui.add(Slider::new(&mut setup.range, 1..=MAX_RADIUS).text("sensor range"));
     if setup.planner.turns_sensor() {
         ui.add(Slider::new(&mut setup.fov, 1..=ALL_AROUND).text("field of view"));
+    }
+    if setup.planner.has_body() {
+        ui.add(Slider::new(&mut setup.clearance, 0..=MAX_CLEARANCE).text("clearance"));
     }
     ui.checkbox(&mut setup.solid, "a cell holds one robot");
     ui.horizontal(|ui| {

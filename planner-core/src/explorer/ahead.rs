@@ -1,5 +1,6 @@
 //! What the last looks saw beside the robot: whether its next step can be made.
 
+use super::body::saw_blocked;
 use crate::cell::{Cell, Direction};
 use crate::sight::Sighting;
 
@@ -45,14 +46,18 @@ impl Ahead {
     }
 
     /// Takes in a look.
-    pub(super) fn look(&mut self, sighting: &Sighting) {
+    pub(super) fn look(&mut self, sighting: &Sighting, clearance: u8) {
         let here = sighting.centre();
         if here != self.from {
             self.was_free = sides(|side| self.saw_free(here.step(side)));
             self.from = here;
         }
         self.free = sighting.free_near();
-        self.blocked = sides(|side| sighting.is_blocked(here.step(side)));
+        self.blocked = sides(|side| saw_blocked(sighting, clearance, here.step(side)));
+        if clearance > 0 {
+            // What it saw free is one cell of many.
+            self.was_free = 0;
+        }
     }
 
     fn saw_free(&self, cell: Cell) -> bool {
@@ -115,7 +120,7 @@ mod tests {
     fn verdict(looks: &[(Cell, bool)], errs_by_place: bool) -> (u8, Verdict) {
         let mut ahead = Ahead::new();
         for &(from, free) in looks {
-            ahead.look(&seen(from, free));
+            ahead.look(&seen(from, free), 0);
         }
         let mut waits = 0;
         loop {

@@ -15,7 +15,6 @@
 //! cell refuses a step too, all cells of the round count as closed.
 
 use crate::cell::Cell;
-use crate::map::Map;
 use crate::tile::{TileIndex, Tiles};
 
 /// Ticks from the last refusal to the end of the first round.
@@ -150,7 +149,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
     }
 
     /// Sets a cell aside; false if it was before.
-    fn add(&mut self, cell: Cell) -> bool {
+    pub(crate) fn add(&mut self, cell: Cell) -> bool {
         let Some((word, bit)) = self.word_mut(cell) else {
             return true;
         };
@@ -179,10 +178,11 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
         self.cells.word(at)
     }
 
-    /// The cells of a tile that no way leads over. Work: one word, or five tiles where
-    /// one of them is set aside.
+    /// The cells of a tile that no way leads over; `looked_from` are the frontier cells of
+    /// it on which somebody has stood. Work: one word, and `looked_from` where one of them is
+    /// set aside.
     #[inline] // mostly there are none
-    pub(crate) fn closed(&self, at: TileIndex, map: &Map<TW, TH>) -> u64 {
+    pub(crate) fn closed(&self, at: TileIndex, looked_from: impl FnOnce() -> u64) -> u64 {
         if !self.has_refused {
             return 0;
         }
@@ -190,7 +190,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
         if cells == 0 || self.all_closed || self.unseen == 0 {
             return cells;
         }
-        cells & !(map.tile(at).visited() & map.frontier(at))
+        cells & !looked_from()
     }
 
     /// What is to be done if of so many frontier cells none is left that is worth a look.
@@ -218,6 +218,7 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
 mod tests {
     use super::*;
     use crate::cell::Extent;
+    use crate::map::Map;
 
     type Small = Aside<3, 3>;
 
@@ -226,13 +227,12 @@ mod tests {
     #[test]
     fn a_round_ends_a_while_after_the_last_refusal_and_the_last_one_never() {
         let mut aside = Small::new();
-        let map = Map::<3, 3>::new(Extent::new(24, 24)).unwrap();
         let doors: std::vec::Vec<Cell> = (0..24).map(|y| Cell::new(9, y)).collect();
         let closed = |aside: &Small| -> u32 {
             (0..9)
                 .map(|i| {
                     aside
-                        .closed(TileIndex::new(i % 3, i / 3), &map)
+                        .closed(TileIndex::new(i % 3, i / 3), || 0)
                         .count_ones()
                 })
                 .sum()
@@ -305,17 +305,29 @@ mod tests {
         let (at, bit) = TileIndex::of(frontier).unwrap();
         let mut aside = Small::new();
         aside.show_nothing(frontier, Cell::new(6, 5));
-        assert_eq!((aside.cells(at), aside.closed(at, &map)), (bit, 0));
+        assert_eq!(
+            (
+                aside.cells(at),
+                aside.closed(at, || map.tile(at).visited() & map.frontier(at))
+            ),
+            (bit, 0)
+        );
         assert_eq!(aside.verdict(8, 30, 0), Verdict::Unseen(Cell::new(6, 5)));
         let (_, other) = TileIndex::of(Cell::new(1, 1)).unwrap();
         aside.refuse(Cell::new(1, 1), false, 0);
         assert_eq!(
-            (aside.cells(at), aside.closed(at, &map)),
+            (
+                aside.cells(at),
+                aside.closed(at, || map.tile(at).visited() & map.frontier(at))
+            ),
             (bit | other, other)
         );
         assert_eq!(aside.verdict(8, 1, 0), Verdict::Unseen(Cell::new(6, 5)));
         aside.refuse(frontier, false, 0);
-        assert_eq!(aside.closed(at, &map), bit | other);
+        assert_eq!(
+            aside.closed(at, || map.tile(at).visited() & map.frontier(at)),
+            bit | other
+        );
         aside.next_round(8, 9);
         assert_eq!(
             (aside.cells(at), aside.verdict(8, 30, 9)),

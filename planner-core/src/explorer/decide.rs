@@ -136,11 +136,12 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             return Some(Stop::nothing_left(self.around.map.free_edge_cells()));
         }
         let now = self.around.now;
-        match self
-            .around
-            .aside
-            .verdict(self.config.patience, frontiers, now)
-        {
+        // Of the map's frontiers nobody knows how many are the body's.
+        let most = match self.around.clearance {
+            0 => frontiers,
+            _ => u32::MAX,
+        };
+        match self.around.aside.verdict(self.config.patience, most, now) {
             Verdict::Nothing if self.link.hearsay().cells > 0 => Some(Stop::Enclosed { frontiers }),
             Verdict::Nothing => Some(Stop::OutOfReach { frontiers }),
             Verdict::Blocked(at) => Some(Stop::Blocked { frontiers, at }),

@@ -279,6 +279,7 @@ impl Evidence {
                 may_vote &= match purpose {
                     Purpose::None => unknown,
                     Purpose::Sides(sides) => unknown | beside(at, centre, sides),
+                    Purpose::Within(range) => unknown | near(at, centre, range),
                     Purpose::Walls => unknown | before.obstacle() & free,
                 };
             }
@@ -340,6 +341,8 @@ pub(super) enum Purpose {
     None,
     /// The cells beside it on these sides, a bit each.
     Sides(u8),
+    /// The cells around it, so far each way.
+    Within(u8),
     /// Walls of the map that it sees free.
     Walls,
 }

@@ -12,6 +12,7 @@
 
 use heapless::Vec;
 
+use super::body::WINDOW_WORK;
 use super::near::Candidate;
 use super::others::Others;
 use super::patch::connected;
@@ -295,7 +296,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         let is_goal = if is_own {
             around.is_goal(goal)
         } else {
-            TileIndex::of(goal).is_some_and(|(at, bit)| around.frontier(at) & bit != 0)
+            around.is_frontier(goal)
         };
         // Something was learnt since the wave read the map.
         if !is_goal {
@@ -310,11 +311,14 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             self.served |= u16::from(group.left == 0) << (label & 15);
         }
         *work += PATCH_WORK;
-        for (at, cells) in connected(goal, |at| around.frontier(at)) {
+        if around.clearance > 0 {
+            *work += WINDOW_WORK;
+        }
+        for (at, cells) in connected(goal, |window| around.frontier_window(window)) {
             self.wave.take(at, cells);
         }
         // With every frontier spoken for, nobody else is served in this pass.
-        if around.visits.is_empty() && self.wave.taken() >= around.map.frontiers() {
+        if around.are_all_taken(self.wave.taken()) {
             self.start_round(pass + 1, false, around);
         } else if let Stage::Sweep { has_served, .. } = &mut self.stage {
             *has_served = true;

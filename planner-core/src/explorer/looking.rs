@@ -15,7 +15,7 @@ const MOST_LOOKS: u8 = 50;
 impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// Takes in a look from a cell of the grid.
     pub(super) fn look_around(&mut self, sighting: &Sighting) -> Learnt {
-        self.ahead.look(sighting);
+        self.ahead.look(sighting, self.around.clearance);
         let purpose = self.purpose();
         // A look for its own sake is taken as it is: a robot that is only pretended hides
         // nothing for long.
@@ -30,6 +30,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// What the robot stands still for.
     fn purpose(&self) -> Purpose {
         match self.waiting.get() {
+            Some(Wait::Look(_) | Wait::Obstructed) if self.around.clearance > 0 => {
+                Purpose::Within(self.around.clearance + 1)
+            }
             Some(Wait::Look(_)) => {
                 let sides = self.around.sides_to_look(self.around.position);
                 Purpose::Sides(sides.fold(0, |sides, side| sides | 1 << side as u8))
@@ -67,7 +70,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.around.end_visits(here);
         let unseen = self.around.unknown_sides(here).next();
         if let Some(side) = unseen {
-            self.around.aside.show_nothing(here, here.step(side));
+            let unseen = self.around.unknown_near(here, side);
+            self.around.aside.show_nothing(here, unseen);
         }
         self.far_is_doubtful = true;
         None
@@ -76,8 +80,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// Whether more looks may decide of what is beside the cell that the robot stands on.
     fn may_decide(&self) -> bool {
         let here = self.around.position;
-        let is_doubtful = |side: Direction| self.around.map.is_doubtful(here.step(side));
-        let is_visit = |side: Direction| self.around.map.is_known(here.step(side));
+        let is_doubtful = |side: Direction| self.around.is_doubtful_near(here, side);
+        let is_visit = |side: Direction| self.around.is_due(here, side);
         let mut sides = self.around.sides_to_look(here);
         let barren = self.config.sensor.barren_looks();
         let may_fall = barren > 0 && self.evidence.barren() <= barren + 1;

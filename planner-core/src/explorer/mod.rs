@@ -84,6 +84,18 @@
 //! 4·(p + 1)·2ᵖ of waiting; D counts a step as 9 ticks where it is vetoed, and looks count
 //! the barren ones.
 //!
+//! # A body
+//! With a [`Config::clearance`] all of this is said of configuration space (`body`): a wall
+//! is a cell from which the body would touch one, free is where it has room, and a cell is
+//! doubtful where that is not known. These states change only when something is learnt, and
+//! a look from an open cell, with nothing in its disc, decides those beside it: so frontiers,
+//! ways and rounds are as above. Two things are less: how many frontiers are left is not
+//! known before a wave has looked for them, and roles are not exchanged. A body that is in
+//! the way of a step holds it up (3), and then counts as a refusal of all cells from which
+//! it would be touched (2). "Complete" then means that the map holds every cell that the
+//! body can sweep from where it is; of what it cannot enter, as much as was seen on the way
+//! ([`Inspect::narrow_cells`]).
+//!
 //! # Why its reason is true
 //! The robot's last wave covered every cell that free cells connect with it. If nothing was
 //! set aside, it met no frontier, so these cells are closed off by cells that were decided
@@ -110,6 +122,8 @@
 
 mod ahead;
 mod aside;
+mod body;
+mod clearance;
 mod decide;
 mod evidence;
 mod far;
@@ -126,6 +140,7 @@ mod wave;
 mod way;
 mod window;
 
+pub use body::{MAX_CLEARANCE, bodies_touch, body_cells};
 pub use evidence::{SensorModel, Votes};
 pub use others::MAX_OTHERS;
 
@@ -183,6 +198,11 @@ pub struct Config {
     /// Ticks after which a robot that is done looks again at places that were free and are
     /// walls now, in turn, instead of stopping; 0: it stops.
     pub patrol: u16,
+    /// Cells that the robot's body reaches beyond the one that its centre is in, 0 to 3; more
+    /// counts as 3. The body lies in the disc dx² + dy² ≤ (clearance + ½)²: 1, 9, 21 or 37
+    /// cells. Looks must show what is within `clearance` + 2 cells. All robots of a fleet
+    /// have the same.
+    pub clearance: u8,
     /// How far looks are believed.
     pub sensor: SensorModel,
     /// How the radio is used.
@@ -204,6 +224,7 @@ impl Config {
             holds: 64,
             way: role::CAPACITY as u16,
             patrol: 0,
+            clearance: 0,
             sensor: SensorModel::truthful(),
             link: LinkConfig::new(),
         }
@@ -218,7 +239,11 @@ impl Config {
         } else {
             with_least
         };
-        most.saturating_add(TICK_WORK + far::LAST_WORK)
+        let body = match self.clearance {
+            0 => 0,
+            _ => body::CELLS_WORK + 2 * body::WINDOW_WORK + 4 * body::TILE_WORK,
+        };
+        most.saturating_add(TICK_WORK + far::LAST_WORK + body)
     }
 
     /// What the far search gets of a tick in any case.
@@ -293,6 +318,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 holds: 0,
                 way: 0,
                 patrol: 0,
+                clearance: 0,
                 sensor: SensorModel::vacant(),
                 link: LinkConfig::vacant(),
             },
@@ -303,6 +329,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 visits: Vec::new(),
                 position: Cell::new(0, 0),
                 now: 0,
+                clearance: 0,
             },
             evidence: Evidence::new(),
             role: Role::new(RobotId(0)),
@@ -357,6 +384,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.around.visits.clear();
         self.around.position = start;
         self.around.now = 0;
+        self.around.clearance = config.clearance.min(MAX_CLEARANCE);
         self.evidence.reset();
         self.config = config;
         self.id = id;
@@ -475,7 +503,10 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         if is_carried {
             self.role.plan = None;
         }
-        let learnt = self.look_around(sighting);
+        let mut learnt = self.look_around(sighting);
+        if self.around.clearance > 0 {
+            learnt += self.around.lie();
+        }
         if is_carried && learnt.anything() {
             // What it stopped for was true of another place.
             self.go_on();
@@ -492,6 +523,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         self.link.tick();
         self.evidence.tick();
         self.work = TICK_WORK;
+        if self.around.clearance > 0 {
+            self.work += body::CELLS_WORK;
+        }
         self.stepping = false;
         self.waiting = Maybe::Nothing;
         self.role.has_arrived = false;
@@ -560,7 +594,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             }
         }
         match self.next_step() {
-            Some(step) if self.vetoes(step) => self.wait(Wait::Obstructed),
+            Some(step) if self.vetoes(step) || self.keeps_apart(step) => {
+                self.wait(Wait::Obstructed)
+            }
             Some(step) => {
                 self.stepping = true;
                 Action::Move(step)
@@ -690,6 +726,10 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Explorer<TW, TH> {
     fn work(&self) -> u32 {
         self.work
+    }
+
+    fn narrow_cells(&self) -> u32 {
+        self.count_narrow_cells()
     }
 
     fn votes(&self, cell: Cell) -> i8 {

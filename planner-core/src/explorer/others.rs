@@ -3,6 +3,7 @@
 
 use heapless::Vec;
 
+use super::body::bodies_touch;
 use super::purse::Purse;
 use crate::cell::{Cell, Direction};
 use crate::list;
@@ -141,6 +142,30 @@ impl Others {
     pub(crate) fn are_all_fresh(&self, now: u32) -> bool {
         let mut heard = self.heard();
         heard.all(|other| !self.purse.is_empty() && other.is_fresh(now))
+    }
+
+    /// Where another robot's body is that this one would touch in `to`. Who moves away from
+    /// it never does. Robots step at once: to those with lower ids a step is left. Work: the
+    /// list once.
+    pub(crate) fn in_the_way(
+        &self,
+        id: RobotId,
+        from: Cell,
+        to: Cell,
+        clearance: u8,
+    ) -> Option<Cell> {
+        let touches = |at: Cell| {
+            bodies_touch(clearance, to, at) && to.distance_squared(at) <= from.distance_squared(at)
+        };
+        let is_in_the_way = |other: &&Other| {
+            let moves = other.id < id && !other.has_stopped;
+            let mut sides = Direction::ALL
+                .map(|side| other.position.step(side))
+                .into_iter();
+            touches(other.position) || moves && sides.any(touches)
+        };
+        let other = self.list.iter().find(is_in_the_way);
+        other.map(|other| other.position)
     }
 
     fn heard(&self) -> impl Iterator<Item = &Other> {

@@ -19,10 +19,10 @@ const ROUNDS: u32 = 2 * REACH as u32;
 /// way, tile by tile. Work: 256 bytes, and 10 rounds over 11 rows.
 pub(crate) fn connected(
     goal: Cell,
-    layer: impl Fn(TileIndex) -> u64,
+    layer: impl FnOnce(Window) -> Rows,
 ) -> impl Iterator<Item = (TileIndex, u64)> {
     let window = Window::around(goal);
-    let mut rows = window.load(layer);
+    let mut rows = layer(window);
     if let Some((row, column)) = window.place(goal) {
         keep_connected(&mut rows, row, column);
     }
@@ -106,7 +106,7 @@ mod tests {
                 }
             }
             let mut found = HashSet::new();
-            for (at, cells) in connected(goal, |at| tiles.get(&at).copied().unwrap_or(0)) {
+            for (at, cells) in connected(goal, |window| window.load(|at| tiles.get(&at).copied().unwrap_or(0))) {
                 found.extend(bits(cells).map(|bit| at.cell(bit)));
             }
             prop_assert!(found.is_subset(&reached));
@@ -128,7 +128,7 @@ mod tests {
     fn a_line_is_spoken_for_five_cells_each_way() {
         let row = |at: TileIndex| if at.y == 1 { 0xff << 16 } else { 0 };
         let goal = Cell::new(17, 10);
-        let found: HashSet<Cell> = connected(goal, row)
+        let found: HashSet<Cell> = connected(goal, |window| window.load(row))
             .flat_map(|(at, cells)| bits(cells).map(move |bit| at.cell(bit)))
             .collect();
         let expected: HashSet<Cell> = (12..=22).map(|x| Cell::new(x, 10)).collect();

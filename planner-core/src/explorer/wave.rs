@@ -8,6 +8,7 @@
 //! empty, by looking at all cells: the waves then reach the same cells, but not by the
 //! shortest ways.
 
+use super::body::TILE_WORK;
 use super::others::MAX_OTHERS;
 use super::queue::{PER_TILE, Places, Queue};
 use super::surroundings::Surroundings;
@@ -59,6 +60,13 @@ mod cell {
     pub(super) const FREE: u8 = 1;
     /// A goal of others; one bit higher: one of the robot's own.
     pub(super) const GOAL: u8 = 1 << 2;
+}
+
+fn load_work<const TW: usize, const TH: usize>(around: &Surroundings<TW, TH>) -> u32 {
+    match around.clearance {
+        0 => LOAD_WORK,
+        _ => LOAD_WORK + TILE_WORK,
+    }
 }
 
 /// Eight cells of a row as bytes, from bits: each byte is 0 or 1.
@@ -327,7 +335,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             return Event::Nothing;
         };
         if self.byte(number) & !cell::TAKEN == 0 {
-            *work += LOAD_WORK;
+            *work += load_work(around);
             self.read(number, labels, around);
         }
         let byte = self.byte(number);
@@ -365,7 +373,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                     };
                 }
                 Pause::Unread(number) => {
-                    *work += LOAD_WORK;
+                    *work += load_work(around);
                     self.read(number, labels, around);
                 }
                 Pause::Empty => {
@@ -455,8 +463,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let Cell { x, y } = self.cell(number);
         let (column, row) = ((x >> 3) as u8, (y >> 3) as u8);
         let at = TileIndex::new(column, row);
-        let (free, frontier) = (around.free(at), around.frontier(at));
-        let (open, goals) = (around.open(at), frontier & !around.aside.cells(at));
+        let [free, open, frontier, goals] = around.layers(at);
         let stride = self.stride as usize;
         let first = usize::from(row) * TILE * stride + usize::from(column) * TILE;
         const READ: u64 = u64::from_ne_bytes([cell::READ; TILE]);

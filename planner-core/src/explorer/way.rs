@@ -30,7 +30,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let here = self.around.position;
         let window = Window::around(here);
         let from = window.place(here)?;
-        let open = window.load(|at| self.around.open(at));
+        let open = self.around.open_window(window);
         let mut farthest = None;
         for (cell, steps) in cells_of(here, self.role.plan.as_ref()).take(LONGEST as usize) {
             match window.place(cell) {

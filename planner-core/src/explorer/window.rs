@@ -111,6 +111,32 @@ impl Window {
         rows
     }
 
+    /// Its rows of tiles: column and row of the first tile, and those of the four that can
+    /// exist.
+    pub(crate) fn rows_of_tiles(
+        self,
+    ) -> impl Iterator<Item = ((i16, i16), [Option<TileIndex>; 4])> {
+        (0..i16::from(TILES)).map(move |dy| {
+            let y = self.y + dy;
+            let tiles = [0, 1, 2, 3].map(|dx| {
+                Some(TileIndex {
+                    x: u8::try_from(self.x + dx).ok()?,
+                    y: u8::try_from(y).ok()?,
+                })
+            });
+            ((self.x, y), tiles)
+        })
+    }
+
+    /// Puts cells of a tile of the window into rows.
+    pub(crate) fn put(self, rows: &mut Rows, at: TileIndex, cells: u64) {
+        let (dx, dy) = (i16::from(at.x) - self.x, i16::from(at.y) - self.y);
+        let rows = rows.iter_mut().skip(usize::from(dy.unsigned_abs()) * TILE);
+        for (row, byte) in rows.zip(cells.to_le_bytes()) {
+            *row |= u32::from(byte) << (8 * u32::from(dx.unsigned_abs())).min(24);
+        }
+    }
+
     /// Gives rows back to the tiles, those that have any. Work: 128 bytes.
     pub(crate) fn split(self, rows: Rows) -> impl Iterator<Item = (TileIndex, u64)> {
         self.tiles().filter_map(move |(at, row, column)| {

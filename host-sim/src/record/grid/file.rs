@@ -23,6 +23,9 @@ struct Header {
     #[serde(default = "all_around", skip_serializing_if = "is_all_around")]
     fov: u16,
     solid: bool,
+    /// Absent where robots are no wider than a cell.
+    #[serde(default, skip_serializing_if = "is_none")]
+    clearance: u8,
     starts: Vec<(i16, i16)>,
     #[serde(flatten)]
     conditions: Conditions,
@@ -35,6 +38,10 @@ fn all_around() -> u16 {
 
 fn is_all_around(fov: &u16) -> bool {
     *fov == ALL_AROUND
+}
+
+fn is_none(clearance: &u8) -> bool {
+    *clearance == 0
 }
 
 #[derive(Serialize, Deserialize)]
@@ -74,6 +81,7 @@ impl Header {
             range: scenario.range,
             fov: scenario.fov,
             solid: scenario.solid,
+            clearance: scenario.clearance,
             starts: scenario
                 .starts
                 .iter()
@@ -96,6 +104,7 @@ impl Header {
             range: self.range,
             fov: self.fov,
             solid: self.solid,
+            clearance: self.clearance,
             conditions: self.conditions,
         };
         scenario.check()?;

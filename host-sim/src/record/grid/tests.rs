@@ -112,6 +112,10 @@ fn a_header_names_a_field_of_view_and_faults_of_senses_only_where_there_are_any(
     assert!(text(&read).contains("\"fov\":62"));
     let error = Trace::read(narrow("\"closest\"").as_bytes()).unwrap_err();
     assert!(error.to_string().contains("closest never turns"), "{error}");
+    assert!(!has(&usual, "clearance"));
+    let wide = usual.replacen("\"solid\":", "\"clearance\":1,\"solid\":", 1);
+    let error = Trace::read(wide.as_bytes()).unwrap_err();
+    assert!(error.to_string().contains("--clearance 1"), "{error}");
 }
 
 #[test]

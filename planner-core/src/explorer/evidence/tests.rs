@@ -79,6 +79,7 @@ impl Naive {
                 Purpose::Sides(sides) => Direction::ALL
                     .iter()
                     .any(|side| sides >> *side as u8 & 1 == 1 && centre.step(*side) == cell),
+                Purpose::Within(range) => is_near(range),
                 Purpose::Walls => is_wall && !is_blocked,
             };
             let may_vote = level == Level::Unknown
@@ -148,6 +149,7 @@ proptest! {
             let purpose = match purpose {
                 0..16 => Purpose::Sides(purpose),
                 16..20 => Purpose::Walls,
+                20..24 => Purpose::Within(purpose - 20),
                 _ => Purpose::None,
             };
             let by = if jump == 0 { 13 } else { 1 };

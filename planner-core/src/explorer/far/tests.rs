@@ -74,6 +74,7 @@ fn around<const TW: usize, const TH: usize>(scene: &Scene) -> (Surroundings<TW, 
         others.hear(RobotId(2 * number + 1), status, scene.own, 0);
     }
     let around = Surroundings {
+        clearance: 0,
         map,
         aside: Aside::new(),
         visits: Vec::new(),
@@ -148,7 +149,7 @@ fn matched<const TW: usize, const TH: usize>(scene: &Scene) -> Option<(Cell, u32
                         return Some((cell, distance));
                     }
                     robots.remove(served);
-                    for (at, cells) in connected(cell, |at| around.frontier(at)) {
+                    for (at, cells) in connected(cell, |window| around.frontier_window(window)) {
                         taken.extend(crate::tile::bits(cells).map(|bit| at.cell(bit)));
                     }
                 }

@@ -3,6 +3,7 @@
 
 mod bonus;
 
+use super::body::WINDOW_WORK;
 use super::lean;
 use super::others::MAX_OTHERS;
 use super::surroundings::Surroundings;
@@ -161,12 +162,15 @@ impl NearSearch {
     ) -> Option<Bonus> {
         self.window = Window::around(around.position);
         *work += GOALS_WORK;
-        let frontier = self.window.load(|at| around.goals(at));
+        let (frontier, open) = around.goals_window(self.window);
+        if open.is_some() {
+            *work += WINDOW_WORK;
+        }
         if frontier.iter().all(|&row| row == 0) {
             return None;
         }
         *work += LOAD_WORK;
-        let open = self.window.load(|at| around.open(at));
+        let open = open.unwrap_or_else(|| around.open_window(self.window));
         for ((row, theirs), (frontier, open)) in self
             .rows
             .iter_mut()

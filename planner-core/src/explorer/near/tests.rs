@@ -100,6 +100,7 @@ proptest! {
         }
         map.stand(own);
         let around = Surroundings {
+            clearance: 0,
             map,
             aside: Aside::new(),
             visits: heapless::Vec::new(),

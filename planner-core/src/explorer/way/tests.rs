@@ -8,7 +8,7 @@ use super::*;
 use crate::cell::Extent;
 use crate::explorer::Config;
 use crate::planner::Planner;
-use crate::robot::{Action, Motion, RobotId, Stop};
+use crate::robot::{Action, Motion, RobotId};
 use crate::sight::{Sighting, look};
 
 type Small = Explorer<3, 3>;

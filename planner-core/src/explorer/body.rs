@@ -1,7 +1,7 @@
 //! Configuration space: where the centre of a body can be.
 //!
 //! The body is the disc of the cells with dx² + dy² ≤ (r + ½)² around its centre. A cell is
-//! *clear* if its whole disc is known to be free, *shut* if a wall lies in its body_cells, and
+//! *clear* if its whole disc is known to be free, *shut* if a wall lies in its disc, and
 //! *doubtful* otherwise. So configuration space has the three states that the map has, and
 //! each changes as the map does: what is open, what is a frontier (clear beside doubtful),
 //! and the proof of the explorer hold there word for word. With a clearance of 0 it is the
@@ -25,7 +25,7 @@ pub(super) const CELLS_WORK: u32 = 12_000;
 const REACH: [[u8; 4]; MAX_CLEARANCE as usize + 1] =
     [[0, 0, 0, 0], [1, 1, 0, 0], [2, 2, 1, 0], [3, 3, 2, 1]];
 
-/// Cells to each side of the middle of a body_cells, row by row: row, and reach in it.
+/// Cells to each side of the middle of a disc, row by row: row, and reach in it.
 fn rows_of(clearance: u8) -> impl Iterator<Item = (i16, i16)> {
     let reach = REACH.get(usize::from(clearance)).copied().unwrap_or([0; 4]);
     let last = i16::from(clearance);

@@ -28,7 +28,7 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
         rows
     }
 
-    /// The robot's body lies in its body_cells, so nothing else does: what is not known of it is
+    /// The robot's body is there, so nothing else is: what is not known of its cells is
     /// free.
     pub(super) fn lie(&mut self) -> Learnt {
         let mut learnt = Learnt::default();

@@ -16,8 +16,8 @@ use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::radio::{FrameError, Heard, MAX_LEN};
 use planner_core::{
-    Action, AnyPlanner, Cell, Contact, Direction, Extent, Inspect, Learnt, Map, Motion, Planner,
-    RobotId, Sighting, Status, Stop, TileSet, Wait,
+    Action, AnyPlanner, Cell, Contact, Direction, Errands, Extent, Inspect, Learnt, Map, Motion,
+    Planner, RobotId, Sighting, Status, Stop, TileSet, Wait,
 };
 
 fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
@@ -233,6 +233,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for LooksAround<TW, TH> {
         self.inner.hear(id, status);
     }
 }
+
+impl<const TW: usize, const TH: usize> Errands<TW, TH> for LooksAround<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LooksAround<TW, TH> {
     fn work(&self) -> u32 {

@@ -39,7 +39,7 @@ mod zeroed;
 
 pub use cell::{Cell, Direction, Extent, ExtentError};
 pub use map::{Learnt, Map};
-pub use planner::{AnyPlanner, Contact, Inspect, Planner};
+pub use planner::{AnyPlanner, Contact, Errands, Inspect, Planner};
 pub use point::Point;
 pub use robot::{Action, Activity, Motion, Reason, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;

@@ -244,10 +244,50 @@ pub trait Inspect<const TW: usize, const TH: usize>: Planner<TW, TH> {
     }
 }
 
-/// All three, for whoever hosts planners of several kinds.
-pub trait AnyPlanner<const TW: usize, const TH: usize>: Contact<TW, TH> + Inspect<TW, TH> {}
+/// Where a robot is sent, and how far it may go. By default a planner knows none of it.
+///
+/// Home is where the robot started. It goes there, or to any other cell, by a shortest way
+/// over cells that are known to be free and did not refuse a step. Meanwhile it observes and
+/// reports as ever, and tells the others that it explores no more.
+pub trait Errands<const TW: usize, const TH: usize>: Planner<TW, TH> {
+    /// Goes home and stops there, with [`Stop::Home`](crate::Stop::Home), or says why not:
+    /// [`Stop::Blocked`](crate::Stop::Blocked), [`Stop::Held`](crate::Stop::Held) or
+    /// [`Stop::NoWay`](crate::Stop::NoWay). Also from a stop. [`Planner::resume`] then goes
+    /// on exploring. False where the planner cannot.
+    fn go_home(&mut self) -> bool {
+        false
+    }
+
+    /// As [`go_home`](Self::go_home), to any cell: it stops there with
+    /// [`Stop::Arrived`](crate::Stop::Arrived). False for a cell outside of the grid, and
+    /// where the planner cannot; nothing has changed then.
+    fn go_to(&mut self, cell: Cell) -> bool {
+        let _ = cell;
+        false
+    }
+
+    /// Says how many steps the robot's energy lasts for; each step that it makes takes one
+    /// off until it is told again. Call it before the first tick, and whenever the number is
+    /// measured anew.
+    ///
+    /// The robot turns back while what is left lasts for the shortest known way home, and
+    /// stops there with [`Stop::Home`](crate::Stop::Home); told more energy then,
+    /// [`Planner::resume`] goes on exploring. It comes home whatever the place looks like,
+    /// if no way that it knows is blocked and no number is told that is less than was left.
+    /// False where the planner cannot.
+    fn energy(&mut self, left: u32) -> bool {
+        let _ = left;
+        false
+    }
+}
+
+/// All of them, for whoever hosts planners of several kinds.
+pub trait AnyPlanner<const TW: usize, const TH: usize>:
+    Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH>
+{
+}
 
 impl<P, const TW: usize, const TH: usize> AnyPlanner<TW, TH> for P where
-    P: Contact<TW, TH> + Inspect<TW, TH>
+    P: Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH>
 {
 }

@@ -89,6 +89,25 @@ pub enum Stop<P = Cell> {
         /// A place where one stood.
         at: P,
     },
+    /// Back where it started, as it was told or for its energy.
+    Home {
+        /// Frontiers left on its map.
+        frontiers: u32,
+    },
+    /// At the place that it was sent to.
+    Arrived {
+        /// Frontiers left on its map.
+        frontiers: u32,
+        /// That place.
+        at: P,
+    },
+    /// Gave up: over places that are known to be free no way leads to where it was to go.
+    NoWay {
+        /// Frontiers left on its map.
+        frontiers: u32,
+        /// Where it was to go.
+        at: P,
+    },
 }
 
 impl<P> Stop<P> {
@@ -112,6 +131,9 @@ impl<P> Stop<P> {
             Self::OutOfReach { .. } => Reason::OutOfReach,
             Self::Unseen { .. } => Reason::Unseen,
             Self::Held { .. } => Reason::Held,
+            Self::Home { .. } => Reason::Home,
+            Self::Arrived { .. } => Reason::Arrived,
+            Self::NoWay { .. } => Reason::NoWay,
         }
     }
 
@@ -131,20 +153,28 @@ impl<P> Stop<P> {
             | Self::NoTrace { frontiers }
             | Self::OutOfReach { frontiers }
             | Self::Unseen { frontiers, .. }
-            | Self::Held { frontiers, .. } => *frontiers,
+            | Self::Held { frontiers, .. }
+            | Self::Home { frontiers }
+            | Self::Arrived { frontiers, .. }
+            | Self::NoWay { frontiers, .. } => *frontiers,
         }
     }
 
     /// The place that the reason names.
     pub const fn place(&self) -> Option<&P> {
         match self {
-            Self::Blocked { at, .. } | Self::Unseen { at, .. } | Self::Held { at, .. } => Some(at),
+            Self::Blocked { at, .. }
+            | Self::Unseen { at, .. }
+            | Self::Held { at, .. }
+            | Self::Arrived { at, .. }
+            | Self::NoWay { at, .. } => Some(at),
             Self::Complete
             | Self::Enclosed { .. }
             | Self::BackAtStart { .. }
             | Self::NoTrace { .. }
             | Self::AtEdge { .. }
-            | Self::OutOfReach { .. } => None,
+            | Self::OutOfReach { .. }
+            | Self::Home { .. } => None,
         }
     }
 }
@@ -186,6 +216,14 @@ impl<P: fmt::Display> fmt::Display for Stop<P> {
             Self::Held { frontiers, at } => write!(
                 f,
                 "gave up: a robot stayed in the way at {at}, {frontiers} frontiers left"
+            ),
+            Self::Home { frontiers } => write!(f, "home, {frontiers} frontiers left"),
+            Self::Arrived { frontiers, at } => {
+                write!(f, "arrived at {at}, {frontiers} frontiers left")
+            }
+            Self::NoWay { frontiers, at } => write!(
+                f,
+                "gave up: no known way leads to {at}, {frontiers} frontiers left"
             ),
         }
     }
@@ -237,6 +275,9 @@ reasons! {
     OutOfReach = 6, "out-of-reach", true;
     Unseen = 7, "unseen", false;
     Held = 8, "held", false;
+    Home = 9, "home", false;
+    Arrived = 10, "arrived", false;
+    NoWay = 11, "no-way", false;
 }
 
 impl Reason {
@@ -323,7 +364,7 @@ pub enum Activity {
     Exploring,
     /// Following others' traces [Gauville2019 §6.1].
     SecondChance,
-    /// Stopped for good.
+    /// Stopped for good, or on its way to where it will stop: it explores no more.
     Stopped,
 }
 

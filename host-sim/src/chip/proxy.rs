@@ -10,8 +10,8 @@ use planner_core::radio::{
 use planner_core::role::Role;
 use planner_core::tile::TileIndex;
 use planner_core::{
-    Action, Activity, Contact, Inspect, Learnt, Map, Motion, Planner, RobotId, Sighting, Status,
-    TileSet, Wait,
+    Action, Activity, Contact, Errands, Inspect, Learnt, Map, Motion, Planner, RobotId, Sighting,
+    Status, TileSet, Wait,
 };
 
 use super::dialogue::Dialogue;
@@ -224,6 +224,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Proxy<TW, TH> {
         self.tell(Some(Call::Adopt), &Request::Adopt(role));
     }
 }
+
+impl<const TW: usize, const TH: usize> Errands<TW, TH> for Proxy<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Proxy<TW, TH> {
     fn work(&self) -> u32 {

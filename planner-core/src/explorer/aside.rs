@@ -170,6 +170,11 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
         Some((self.cells.get_mut(at)?, bit))
     }
 
+    /// Whether a cell refused a step in this round.
+    pub(crate) const fn has_refused(&self) -> bool {
+        self.has_refused
+    }
+
     /// The cells of a tile that are no goals.
     pub(crate) fn cells(&self, at: TileIndex) -> u64 {
         if !self.has_refused && self.unseen == 0 {
@@ -202,6 +207,11 @@ impl<const TW: usize, const TH: usize> Aside<TW, TH> {
                 false => Verdict::Unseen(self.unseen_at),
             };
         }
+        self.verdict_on_ways(patience, now)
+    }
+
+    /// What is to be done if no way leads to a cell.
+    pub(crate) fn verdict_on_ways(&self, patience: u8, now: u32) -> Verdict {
         match self.has_refused {
             false => Verdict::Nothing,
             true if self.is_last_round(patience) => match self.is_blocked {

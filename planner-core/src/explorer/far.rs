@@ -85,6 +85,11 @@ enum Stage {
         goal: Cell,
         is_seeded: bool,
     },
+    /// The shortest way from the robot to a cell, by an exact wave from there.
+    Way {
+        to: Cell,
+        is_seeded: bool,
+    },
 }
 
 /// Robots that were heard on one cell; the index is the label of their wave.
@@ -209,6 +214,24 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         };
     }
 
+    /// Starts looking for the shortest way to a cell, whatever is there.
+    pub(crate) fn start_way(&mut self, to: Cell, around: &Surroundings<TW, TH>) {
+        self.wave.begin_exact(around.map.extent());
+        self.served = 0;
+        self.stage = Stage::Way {
+            to,
+            is_seeded: false,
+        };
+    }
+
+    /// The cell that the shortest way is being looked for to.
+    pub(crate) fn way_to(&self) -> Option<Cell> {
+        match self.stage {
+            Stage::Way { to, .. } => Some(to),
+            _ => None,
+        }
+    }
+
     /// Goes on with the search for at most `slice` of work, [`LAST_WORK`], and
     /// [`WAY_WORK`] where it ends.
     pub(crate) fn advance(
@@ -224,6 +247,12 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             self.stage = Stage::Idle;
             return Outcome::Lost;
         }
+        if let Stage::Way { to, .. } = self.stage
+            && !around.is_open(to)
+        {
+            self.stage = Stage::Idle;
+            return Outcome::Lost;
+        }
         while *work < until {
             let outcome = match self.stage {
                 Stage::Idle => break,
@@ -231,6 +260,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
                 _ if !self.wave.clear(work) => Outcome::Searching,
                 Stage::Sweep { .. } => self.sweep(around, until, work),
                 Stage::Route { .. } => self.route(around, until, work),
+                Stage::Way { .. } => self.measure(around, until, work),
             };
             if !matches!(outcome, Outcome::Searching) {
                 self.stage = Stage::Idle;
@@ -407,6 +437,28 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
             Some(way) => Outcome::Found(way),
             None if event == Event::End => Outcome::Lost,
             None => Outcome::Searching,
+        }
+    }
+
+    /// The exact wave begins, or goes on until it meets the robot.
+    fn measure(&mut self, around: &Surroundings<TW, TH>, until: u32, work: &mut u32) -> Outcome {
+        let labels = self.labels();
+        let Stage::Way { to, is_seeded } = &mut self.stage else {
+            return Outcome::Searching;
+        };
+        let (to, own) = (*to, around.position);
+        if !*is_seeded {
+            *is_seeded = true;
+            self.wave.seed(to, 0, labels, around, work);
+            return Outcome::Searching;
+        }
+        match self.wave.run(labels, around, until, work) {
+            Event::Nothing => Outcome::Searching,
+            Event::End => Outcome::Lost,
+            Event::Goal { .. } => match self.way(to, own, self.wave.layer(), work) {
+                Some(way) => Outcome::Found(way),
+                None => Outcome::Lost,
+            },
         }
     }
 

@@ -129,6 +129,7 @@ mod evidence;
 mod far;
 mod lean;
 mod looking;
+mod mission;
 mod near;
 mod others;
 mod patch;
@@ -149,6 +150,7 @@ use aside::Aside;
 use decide::Near;
 use evidence::Evidence;
 use far::{FarSearch, Outcome};
+use mission::Budget;
 use near::NearSearch;
 use others::Others;
 use surroundings::Surroundings;
@@ -203,6 +205,9 @@ pub struct Config {
     /// cells. Looks must show what is within `clearance` + 2 cells. All robots of a fleet
     /// have the same.
     pub clearance: u8,
+    /// Whether a robot that has explored goes home, to where it started, before it stops;
+    /// see [`Errands`](crate::planner::Errands).
+    pub come_home: bool,
     /// How far looks are believed.
     pub sensor: SensorModel,
     /// How the radio is used.
@@ -225,6 +230,7 @@ impl Config {
             way: role::CAPACITY as u16,
             patrol: 0,
             clearance: 0,
+            come_home: false,
             sensor: SensorModel::truthful(),
             link: LinkConfig::new(),
         }
@@ -275,6 +281,7 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     link: Link<TH>,
     near: NearSearch,
     far: FarSearch<TW, TH>,
+    budget: Budget,
     /// The goal chosen last.
     last_goal: Option<Cell>,
     /// No new far search before this tick while there is a plan.
@@ -319,6 +326,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 way: 0,
                 patrol: 0,
                 clearance: 0,
+                come_home: false,
                 sensor: SensorModel::vacant(),
                 link: LinkConfig::vacant(),
             },
@@ -332,11 +340,12 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 clearance: 0,
             },
             evidence: Evidence::new(),
-            role: Role::new(RobotId(0)),
+            role: Role::new(RobotId(0), Cell::new(0, 0)),
             others: Others::new(),
             link: Link::vacant(),
             near: NearSearch::new(),
             far: FarSearch::new(),
+            budget: Budget::new(),
             last_goal: None,
             far_again: 0,
             patrol_again: 0,
@@ -388,10 +397,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.evidence.reset();
         self.config = config;
         self.id = id;
-        self.role = Role::new(id);
+        self.role = Role::new(id, start);
         self.others = Others::new();
         self.link.reset(config.link, id, extent);
         self.far.cancel();
+        self.budget = Budget::new();
         self.last_goal = None;
         self.far_again = 0;
         self.patrol_again = 0;
@@ -422,6 +432,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             if learnt.opened > 0 {
                 self.around.keep_visits();
             }
+            self.learn_on_errand(learnt);
         }
     }
 
@@ -471,6 +482,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.role.changes = 0;
         self.holds = 0;
         self.far.cancel();
+        self.budget.doubt();
     }
 
     fn wait(&mut self, reason: Wait) -> Action {
@@ -499,6 +511,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.around.position = centre;
             self.stepping = false;
             self.looks = 0;
+            self.lose_way_home();
         }
         if is_carried {
             self.role.plan = None;
@@ -538,6 +551,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         if !self.around.map.is_known(self.around.position) {
             // Nothing seen yet is not the same as nothing left.
             return self.wait(Wait::Sight);
+        }
+        if let Some(action) = self.mind_mission() {
+            return action;
         }
         if self.around.is_done() {
             let edge = self.around.map.free_edge_cells();
@@ -634,6 +650,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                 self.looks = 0;
                 self.role.make_step();
                 self.holds = 0;
+                self.budget.make_step();
             }
             Motion::Blocked => self.refuse(next, false),
             Motion::Held => {
@@ -653,7 +670,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         Status {
             position: self.around.position,
             goal: self.role.plan.map(|plan| plan.goal),
-            activity: Activity::stopped_if(self.role.has_stopped()),
+            activity: Activity::stopped_if(self.role.has_stopped() || self.has_errand()),
         }
     }
 
@@ -711,8 +728,9 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
         }
     }
 
+    /// None with a budget of energy: it is this body's own.
     fn role(&self) -> Option<Role> {
-        Some(self.role)
+        (!self.budget.is_limited()).then_some(self.role)
     }
 
     fn adopt(&mut self, role: Role) {
@@ -720,6 +738,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
         self.stepping = false;
         self.holds = 0;
         self.far.cancel();
+        self.budget.doubt();
+        self.go_back();
     }
 }
 

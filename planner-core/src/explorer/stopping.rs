@@ -3,6 +3,7 @@
 use super::Explorer;
 use super::ahead::MOST_WAITS;
 use crate::robot::{Action, Stop, Wait};
+use crate::role::End;
 use crate::zeroed::Maybe;
 
 impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
@@ -30,12 +31,25 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         if is_patrol {
             return self.wait(Wait::Patrol);
         }
+        if self.config.come_home {
+            self.send(self.role.home, End::Exploration(stop));
+            return self.wait(Wait::Search);
+        }
+        self.stop(stop)
+    }
+
+    pub(super) fn stop(&mut self, stop: Stop) -> Action {
+        self.role.plan = None;
+        self.far.cancel();
         self.role.stopped = Maybe::Just(stop);
         Action::Stop(stop)
     }
 
     /// Not stopped any more; everything is tried anew.
     pub(super) fn go_on(&mut self) {
+        if self.role.has_stopped() {
+            self.role.errand = Maybe::Nothing;
+        }
         self.role.stopped = Maybe::Nothing;
         self.role.plan = None;
         self.role.changes = 0;

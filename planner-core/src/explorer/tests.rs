@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-mod scene;
+pub(super) mod scene;
 mod senses;
 
 use scene::*;
@@ -91,7 +91,11 @@ fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
                 // Others may have stood on it and told it since.
                 prop_assert!(scene.is_silent(at), "{}", told);
             }
-            Stop::BackAtStart { .. } | Stop::NoTrace { .. } => prop_assert!(false, "{}", told),
+            Stop::BackAtStart { .. }
+            | Stop::NoTrace { .. }
+            | Stop::Home { .. }
+            | Stop::Arrived { .. }
+            | Stop::NoWay { .. } => prop_assert!(false, "{}", told),
         }
         if scene.start.len() == 1 && !matches!(stop, Stop::AtEdge { .. }) {
             prop_assert_eq!(stop.left(), robot.map().frontiers(), "{}", told);
@@ -101,7 +105,7 @@ fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
 }
 
 /// As many small worlds as `PROPTEST_CASES` says, or these.
-fn soak() -> ProptestConfig {
+pub(super) fn soak() -> ProptestConfig {
     let asked = std::env::var("PROPTEST_CASES");
     ProptestConfig {
         cases: asked

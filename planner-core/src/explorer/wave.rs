@@ -7,6 +7,10 @@
 //! The queue holds three cells a tile. What does not fit is found again when the queue is
 //! empty, by looking at all cells: the waves then reach the same cells, but not by the
 //! shortest ways.
+//!
+//! An *exact* wave is alone, and its ways are the shortest whatever the queue holds. It
+//! needs no label, so each cell keeps its distance modulo 3 there: what a layer has lost
+//! is found by that before the next one begins. Its one goal is the robot.
 
 use super::body::TILE_WORK;
 use super::others::MAX_OTHERS;
@@ -133,6 +137,9 @@ struct Step<'a, 'b, const OWN: bool> {
     given_up: u16,
 }
 
+/// Distances of an exact wave are kept modulo this: cells beside each other differ.
+const RING: u8 = 3;
+
 impl<const OWN: bool> Step<'_, '_, OWN> {
     /// What tells that the wave may enter, and that it reaches a goal.
     const FREE: u8 = cell::FREE << OWN as u8;
@@ -216,6 +223,8 @@ pub(crate) struct Wave<const TW: usize, const TH: usize> {
     layer_end: u32,
     /// Frontier cells that are spoken for.
     taken: u32,
+    /// Whether the wave is alone and its ways are the shortest.
+    is_exact: bool,
 }
 
 impl<const TW: usize, const TH: usize> Wave<TW, TH> {
@@ -236,6 +245,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             layer: 0,
             layer_end: 0,
             taken: 0,
+            is_exact: false,
         }
     }
 
@@ -303,6 +313,13 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         self.searched = self.end;
         self.layer = 0;
         self.layer_end = 0;
+        self.is_exact = false;
+    }
+
+    /// As [`begin`](Self::begin), for one exact wave, of label 0.
+    pub(crate) fn begin_exact(&mut self, extent: Extent) {
+        self.begin(extent, false);
+        self.is_exact = true;
     }
 
     /// Forgets a chunk of the cells; says whether all are forgotten. Only then waves can
@@ -378,7 +395,11 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 }
                 Pause::Empty => {
                     *work += SOME_WORK;
-                    if !self.find_lost(labels) {
+                    let has_found = match self.is_exact {
+                        true => self.find_lost_of_layer(),
+                        false => self.find_lost(labels),
+                    };
+                    if !has_found {
                         return Event::End;
                     }
                 }
@@ -395,6 +416,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let end = (self.end as usize).min(bytes.len());
         let bytes = bytes.get_mut(..end).unwrap_or_default();
         let stride = self.stride as usize;
+        let is_exact = self.is_exact;
         let (mut queue, mut layer_end) = (self.queue, self.layer_end);
         let (mut from, mut is_under_way) = (self.from as usize, self.is_under_way);
         let mut notes = Notes {
@@ -408,6 +430,16 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                     break Pause::Enough;
                 }
                 if queue.first == layer_end {
+                    if is_exact {
+                        if self.searched < self.end {
+                            break Pause::Empty;
+                        }
+                        // What was lost belongs to the layer that begins.
+                        if core::mem::take(&mut notes.has_lost) | self.has_lost {
+                            self.has_lost = false;
+                            self.searched = 0;
+                        }
+                    }
                     self.layer += 1;
                     layer_end = queue.end;
                 }
@@ -424,6 +456,7 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 is_under_way = false;
                 continue;
             }
+            let mark = if is_exact { (label + 1) % RING } else { label };
             macro_rules! step {
                 ($own:literal) => {
                     Step::<$own> {
@@ -431,13 +464,13 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                         places: &mut places,
                         queue: &mut queue,
                         notes: &mut notes,
-                        mark: cell::REACHED | label,
+                        mark: cell::REACHED | mark,
                         given_up: labels.given_up,
                     }
                     .enter_all(from, stride)
                 };
             }
-            let pause = if label == labels.own {
+            let pause = if is_exact || label == labels.own {
                 step!(true)
             } else {
                 step!(false)
@@ -464,6 +497,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let (column, row) = ((x >> 3) as u8, (y >> 3) as u8);
         let at = TileIndex::new(column, row);
         let [free, open, frontier, goals] = around.layers(at);
+        let goals = match TileIndex::of(around.position) {
+            Some((tile, bit)) if self.is_exact => bit & u64::from(tile == at).wrapping_neg(),
+            _ => goals,
+        };
         let stride = self.stride as usize;
         let first = usize::from(row) * TILE * stride + usize::from(column) * TILE;
         const READ: u64 = u64::from_ne_bytes([cell::READ; TILE]);
@@ -513,6 +550,25 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         true
     }
 
+    /// As [`find_lost`](Self::find_lost) for an exact wave: the next cell of this layer,
+    /// all of which stood in the queue or were lost, has its neighbours looked at, once
+    /// more at worst. False if none was lost.
+    #[cold]
+    fn find_lost_of_layer(&mut self) -> bool {
+        let is_searching = self.searched < self.end;
+        let layer = ((self.layer + 2) % u32::from(RING)) as u8;
+        for number in (self.searched..self.end).take(SOME) {
+            self.searched = number + 1;
+            let byte = self.byte(number as usize);
+            if byte & (cell::REACHED | cell::LABEL) == cell::REACHED | layer {
+                self.from = number;
+                self.is_under_way = true;
+                break;
+            }
+        }
+        is_searching
+    }
+
     /// Steps that the waves have made at most: the distance of what they reach next.
     pub(crate) const fn layer(&self) -> u32 {
         self.layer
@@ -535,10 +591,12 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             .fold(0, |cells, bit| cells | 1 << bit)
     }
 
-    /// The direction back to where the wave `label` began, if it has reached the cell.
+    /// The direction back to where the wave `label` began, if it has reached the cell; an
+    /// exact wave has any label.
     pub(crate) fn direction_at(&self, cell: Cell, label: u8) -> Option<Direction> {
         let byte = self.bytes().get(self.number(cell)?)?;
-        let is_its = byte & (cell::REACHED | cell::LABEL) == cell::REACHED | label;
+        let is_its = byte & (cell::REACHED | cell::LABEL) == cell::REACHED | label
+            || self.is_exact && byte & cell::REACHED != 0;
         is_its.then(|| Direction::from_index(byte >> cell::BACK))
     }
 

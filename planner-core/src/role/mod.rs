@@ -23,12 +23,33 @@ pub(crate) struct Plan {
     pub(crate) path: Path,
 }
 
+/// Where a role goes instead of exploring, and what it stops with there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Errand {
+    pub(crate) to: Cell,
+    pub(crate) end: End,
+}
+
+/// What ends with an errand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum End {
+    /// A visit to a cell.
+    Visit,
+    /// The way home, as it was told or for its energy.
+    Home,
+    /// The exploration, for this reason; the robot is on its way home.
+    Exploration(Stop),
+}
+
 /// Plans that a role may lose by exchanges; then bodies in its way count as obstacles,
 /// until it learns something or a round of cells set aside ends. Bodies set
 /// cells aside each for itself: without a limit they could send roles round and round.
 const MOST_LOST: u8 = 4;
 
-/// What a robot is about to do. Robot `k` starts with role `k`.
+/// What a robot is about to do. Robot `k` starts with role `k`, and its home is the home of
+/// this role.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Role {
@@ -43,12 +64,19 @@ pub struct Role {
     /// Whether it has reached its goal and has not decided since.
     pub(crate) has_arrived: bool,
     pub(crate) stopped: Maybe<Stop>,
+    pub(crate) home: Cell,
+    pub(crate) errand: Maybe<Errand>,
+    /// How often an exchange took it from where its errand had led.
+    pub(crate) returns: u8,
 }
 
 impl Role {
-    pub(crate) const fn new(rank: RobotId) -> Self {
+    pub(crate) const fn new(rank: RobotId, home: Cell) -> Self {
         Self {
             rank,
+            home,
+            errand: Maybe::Nothing,
+            returns: 0,
             plan: None,
             since: 0,
             changes: 0,
@@ -160,7 +188,7 @@ mod tests {
                 remaining: 10,
                 path,
             }),
-            ..Role::new(RobotId(rank))
+            ..Role::new(RobotId(rank), HERE)
         }
     }
 

@@ -221,4 +221,40 @@ proptest! {
             (outcome, expected) => prop_assert!(false, "{outcome:?}, not {expected:?}"),
         }
     }
+
+    #[test]
+    fn an_exact_way_is_the_shortest_though_the_queue_is_full(
+        scene in scene(), to in cell(), slice in 1u32..100_000,
+    ) {
+        let (around, _) = around::<3, 3>(&scene);
+        let mut far = Box::new(FarSearch::<3, 3>::new());
+        far.start_way(to, &around);
+        let mut work = 0;
+        let found = loop {
+            let before = work;
+            let outcome = far.advance(&around, slice, &mut work);
+            assert!(work - before <= slice + LAST_WORK + WAY_WORK);
+            if !matches!(outcome, Outcome::Searching) {
+                break outcome;
+            }
+        };
+        let mut distances = HashMap::from([(scene.own, 0)]);
+        let mut queue = VecDeque::from([scene.own]);
+        while let Some(cell) = queue.pop_front() {
+            for beside in Direction::ALL.map(|side| cell.step(side)) {
+                if around.map.is_free(beside) && !distances.contains_key(&beside) {
+                    distances.insert(beside, distances[&cell] + 1);
+                    queue.push_back(beside);
+                }
+            }
+        }
+        match found {
+            Outcome::Found(way) => {
+                prop_assert_eq!(Some(&way.length), distances.get(&to));
+                prop_assert_eq!(way.path.len(), way.length.min(256));
+            }
+            // The robot is there: it asks for no way.
+            _ => prop_assert!(to == scene.own || !distances.contains_key(&to)),
+        }
+    }
 }

@@ -7,65 +7,68 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::planner::Errands;
 use crate::role::exchange;
 use crate::sight::look;
 
 #[derive(Clone, Debug)]
-pub(super) struct Scene {
-    pub(super) extent: Extent,
-    pub(super) walls: Vec<bool>,
-    pub(super) start: Vec<Cell>,
-    pub(super) radius: u8,
-    pub(super) config: Config,
+pub(in crate::explorer) struct Scene {
+    pub(in crate::explorer) extent: Extent,
+    pub(in crate::explorer) walls: Vec<bool>,
+    pub(in crate::explorer) start: Vec<Cell>,
+    pub(in crate::explorer) radius: u8,
+    pub(in crate::explorer) config: Config,
     /// Ticks between two exchanges of maps; 0: never.
-    pub(super) sync: u32,
+    pub(in crate::explorer) sync: u32,
     /// Steps refused, out of 256, for a while.
-    pub(super) refusals: u8,
-    pub(super) solid: bool,
-    pub(super) trouble: Trouble,
-    pub(super) seed: u64,
+    pub(in crate::explorer) refusals: u8,
+    pub(in crate::explorer) solid: bool,
+    pub(in crate::explorer) trouble: Trouble,
+    pub(in crate::explorer) seed: u64,
+    /// Steps that each robot's energy lasts for, and ticks after which it is told again.
+    pub(in crate::explorer) energy: Option<(u32, u32)>,
 }
 
 /// What a robot cannot rely on.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Trouble {
+pub(in crate::explorer) struct Trouble {
     /// Robots that only tell where they are and go, and what each is up to.
-    pub(super) ghosts: Vec<Ghost>,
+    pub(in crate::explorer) ghosts: Vec<Ghost>,
     /// Cells of which no look says anything.
-    pub(super) silent: Vec<Cell>,
+    pub(in crate::explorer) silent: Vec<Cell>,
     /// Cells that refuse every step, and whether as a robot that goes first.
-    pub(super) refusing: Vec<(Cell, bool)>,
+    pub(in crate::explorer) refusing: Vec<(Cell, bool)>,
     /// Degrees in which the sensor looks; 0: all around.
-    pub(super) view: u16,
+    pub(in crate::explorer) view: u16,
     /// Ticks in which a robot's poses lie off the grid: robot, first, number.
-    pub(super) astray: Vec<(usize, u32, u32)>,
+    pub(in crate::explorer) astray: Vec<(usize, u32, u32)>,
     /// Of the tiles that could be seen, those out of 256 that are told before the start.
-    pub(super) told: u8,
+    pub(in crate::explorer) told: u8,
     /// Looks at a cell that are wrong, out of 256.
-    pub(super) noise: u8,
+    pub(in crate::explorer) noise: u8,
 }
 
 impl Trouble {
     /// Whether a robot may have to give up.
-    pub(super) fn is_any(&self) -> bool {
+    pub(in crate::explorer) fn is_any(&self) -> bool {
         !self.silent.is_empty() || !self.refusing.is_empty()
     }
 }
 
 /// A robot that is not there, told of so as to do harm.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ghost {
-    pub(super) id: u8,
+pub(in crate::explorer) struct Ghost {
+    pub(in crate::explorer) id: u8,
     /// What it claims, see [`Ghost::status`].
-    pub(super) aim: u8,
+    pub(in crate::explorer) aim: u8,
     /// Ticks between two changes of its mind.
-    pub(super) period: u32,
+    pub(in crate::explorer) period: u32,
     /// It speaks only until then.
-    pub(super) silence: u32,
+    pub(in crate::explorer) silence: u32,
 }
 
 impl Ghost {
-    pub(super) fn status(self, robot: &Small, tick: u32, dice: &mut Dice) -> Status {
+    pub(in crate::explorer) fn status(self, robot: &Small, tick: u32, dice: &mut Dice) -> Status {
         let here = robot.around.position;
         let goal = robot.status().goal;
         let far = Cell::new(
@@ -101,13 +104,17 @@ impl Ghost {
 }
 
 impl Scene {
-    pub(super) fn is_blocked(&self, cell: Cell) -> bool {
+    pub(in crate::explorer) fn is_blocked(&self, cell: Cell) -> bool {
         !self.extent.contains(cell)
             || self.walls[cell.y as usize * usize::from(self.extent.width) + cell.x as usize]
     }
 
     /// The cells that a way leads to over free cells that `passes` lets through.
-    pub(super) fn reachable(&self, from: Cell, passes: impl Fn(Cell) -> bool) -> Vec<Cell> {
+    pub(in crate::explorer) fn reachable(
+        &self,
+        from: Cell,
+        passes: impl Fn(Cell) -> bool,
+    ) -> Vec<Cell> {
         let mut found = vec![from];
         let mut next = 0;
         while let Some(&cell) = found.get(next) {
@@ -122,17 +129,17 @@ impl Scene {
         found
     }
 
-    pub(super) fn is_silent(&self, cell: Cell) -> bool {
+    pub(in crate::explorer) fn is_silent(&self, cell: Cell) -> bool {
         self.trouble.silent.contains(&cell)
     }
 
-    pub(super) fn refuses(&self, cell: Cell) -> Option<Motion> {
+    pub(in crate::explorer) fn refuses(&self, cell: Cell) -> Option<Motion> {
         let found = self.trouble.refusing.iter().find(|(at, _)| *at == cell);
         found.map(|&(_, robot)| if robot { Motion::Held } else { Motion::Blocked })
     }
 
     /// What a robot that looks to `heading` sees.
-    pub(super) fn look(&self, from: Cell, heading: Direction) -> Sighting {
+    pub(in crate::explorer) fn look(&self, from: Cell, heading: Direction) -> Sighting {
         let all = look(from, self.radius, |cell| self.is_blocked(cell));
         let is_in_view = |cell: &Cell| {
             if self.trouble.view == 0 {
@@ -157,7 +164,7 @@ impl Scene {
     }
 
     /// Tells a robot, truthfully, tiles of the place where it will be.
-    pub(super) fn tell(&self, robot: &mut Small, start: Cell, dice: &mut Dice) {
+    pub(in crate::explorer) fn tell(&self, robot: &mut Small, start: Cell, dice: &mut Dice) {
         let mut told = Map::<3, 3>::new(self.extent).unwrap();
         for cell in self.reachable(start, |_| true) {
             if !self.is_silent(cell) {
@@ -175,7 +182,7 @@ impl Scene {
 }
 
 /// What a sensor says that is wrong now and then, of any cell but the robot's own.
-pub(super) fn noisy(sighting: &Sighting, noise: u8, dice: &mut Dice) -> Sighting {
+pub(in crate::explorer) fn noisy(sighting: &Sighting, noise: u8, dice: &mut Dice) -> Sighting {
     let mut told = Sighting::new(sighting.centre());
     let mut tell = |cell: Cell, blocked: bool| {
         if blocked != (dice.roll() < noise) {
@@ -191,12 +198,12 @@ pub(super) fn noisy(sighting: &Sighting, noise: u8, dice: &mut Dice) -> Sighting
 
 /// No step is refused from this tick on: within the patience of the default
 /// configuration, 4 + 8 + … + 256 ticks of pauses before the eighth refusal.
-pub(super) const CLEARED: u32 = 400;
+pub(in crate::explorer) const CLEARED: u32 = 400;
 
-pub(super) struct Dice(u64);
+pub(in crate::explorer) struct Dice(u64);
 
 impl Dice {
-    pub(super) fn roll(&mut self) -> u8 {
+    pub(in crate::explorer) fn roll(&mut self) -> u8 {
         self.0 = self
             .0
             .wrapping_mul(6364136223846793005)
@@ -205,7 +212,11 @@ impl Dice {
     }
 }
 
-pub(super) fn trouble(cells: usize, width: u16, robots: usize) -> impl Strategy<Value = Trouble> {
+pub(in crate::explorer) fn trouble(
+    cells: usize,
+    width: u16,
+    robots: usize,
+) -> impl Strategy<Value = Trouble> {
     let cell = move || {
         (0..cells).prop_map(move |i| {
             let (x, y) = (i % usize::from(width), i / usize::from(width));
@@ -246,7 +257,7 @@ pub(super) fn trouble(cells: usize, width: u16, robots: usize) -> impl Strategy<
         })
 }
 
-pub(super) fn sensor() -> impl Strategy<Value = SensorModel> {
+pub(in crate::explorer) fn sensor() -> impl Strategy<Value = SensorModel> {
     let votes = prop_oneof![Just(Votes::PerLook), Just(Votes::PerPlace)];
     let any_model = (1..=3u8, votes, 1..=15u8, [0..=15u8, 0..=15], any::<bool>()).prop_map(
         |(margin, votes, sure_range, [flip_range, visited_range], sees_robots)| SensorModel {
@@ -266,7 +277,7 @@ pub(super) fn sensor() -> impl Strategy<Value = SensorModel> {
     ]
 }
 
-pub(super) fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
+pub(in crate::explorer) fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
     (4u16..=20, 4u16..=20, 0.0..0.55f64, 1usize..=6, any::<u64>()).prop_flat_map(
         move |(width, height, share, robots, seed)| {
             let cells = usize::from(width) * usize::from(height);
@@ -327,6 +338,7 @@ pub(super) fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
                             solid,
                             trouble,
                             seed,
+                            energy: None,
                         }
                     },
                 )
@@ -334,14 +346,42 @@ pub(super) fn scene(is_troubled: bool) -> impl Strategy<Value = Scene> {
     )
 }
 
-pub(super) struct Ended {
-    pub(super) robots: Vec<Small>,
-    pub(super) stops: Vec<Option<Stop>>,
-    pub(super) ticks: u32,
+/// So many steps take the robot home, over what it knows to be free.
+fn assert_comes_home(robot: &Small, energy: u32) {
+    let (home, here) = (robot.role.home, robot.around.position);
+    let mut layer = vec![here];
+    let mut reached = layer.clone();
+    for _ in 0..energy {
+        if reached.contains(&home) {
+            break;
+        }
+        let beside = layer
+            .iter()
+            .flat_map(|cell| Direction::ALL.map(|side| cell.step(side)));
+        let mut next: Vec<_> = beside.filter(|cell| robot.map().is_free(*cell)).collect();
+        next.sort();
+        next.dedup();
+        next.retain(|cell| !reached.contains(cell));
+        reached.extend(&next);
+        layer = next;
+    }
+    assert!(
+        reached.contains(&home),
+        "caught out at {here}, home is {home}, {energy} left, {:?} {:?}\n{:?}",
+        robot.budget,
+        robot.role,
+        robot.map()
+    );
+}
+
+pub(in crate::explorer) struct Ended {
+    pub(in crate::explorer) robots: Vec<Small>,
+    pub(in crate::explorer) stops: Vec<Option<Stop>>,
+    pub(in crate::explorer) ticks: u32,
 }
 
 /// Runs until every robot has stopped, or `limit` ticks.
-pub(super) fn run(scene: &Scene, limit: u32) -> Ended {
+pub(in crate::explorer) fn run(scene: &Scene, limit: u32) -> Ended {
     let mut dice = Dice(scene.seed);
     let mut robots: Vec<Small> = scene
         .start
@@ -364,9 +404,18 @@ pub(super) fn run(scene: &Scene, limit: u32) -> Ended {
         }
         all
     };
+    let mut steps = vec![0; robots.len()];
     let mut looks = HashMap::new();
     let mut ticks = 0;
     while stops.iter().any(Option::is_none) && ticks < limit {
+        if let Some((energy, period)) = scene.energy {
+            for (robot, steps) in robots.iter_mut().zip(&steps) {
+                if ticks % period == 0 {
+                    robot.energy(energy - steps);
+                }
+                assert_comes_home(robot, energy - steps);
+            }
+        }
         let ticks_now = ticks;
         let is_astray = |robot: usize| {
             let mut spells = scene.trouble.astray.iter();
@@ -409,7 +458,7 @@ pub(super) fn run(scene: &Scene, limit: u32) -> Ended {
         }
         let mut acted = Vec::new();
         for i in 0..robots.len() {
-            let rank = robots[i].role().unwrap().rank();
+            let rank = robots[i].role.rank;
             if acted.contains(&rank) {
                 continue;
             }
@@ -430,6 +479,10 @@ pub(super) fn run(scene: &Scene, limit: u32) -> Ended {
                             robots[i].report(scene.refuses(next).unwrap());
                         }
                         _ if ticks < CLEARED && dice.roll() < scene.refusals => {
+                            robots[i].report(Motion::Blocked);
+                        }
+                        Some(_) if scene.solid && scene.energy.is_some() => {
+                            assert_eq!(robots[i].role(), None);
                             robots[i].report(Motion::Blocked);
                         }
                         Some(j) if scene.solid => {
@@ -453,6 +506,7 @@ pub(super) fn run(scene: &Scene, limit: u32) -> Ended {
                         }
                         _ => {
                             at[i] = next;
+                            steps[i] += 1;
                             robots[i].report(Motion::Moved);
                         }
                     }

@@ -52,7 +52,10 @@ fn assert_truthful(world: &World, robot: &world::Robot, stop: Stop) {
         Stop::Enclosed { .. }
         | Stop::OutOfReach { .. }
         | Stop::Unseen { .. }
-        | Stop::Held { .. } => panic!("it does not look for that"),
+        | Stop::Held { .. }
+        | Stop::Home { .. }
+        | Stop::Arrived { .. }
+        | Stop::NoWay { .. } => panic!("it does not look for that"),
     }
 }
 

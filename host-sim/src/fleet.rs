@@ -26,6 +26,8 @@ pub struct Rules {
     pub trouble: Trouble,
     /// Seed of that.
     pub seed: u64,
+    /// Steps that the energy of a robot lasts for that goes on after a stop; 0: no limit.
+    pub energy: u32,
 }
 
 /// Steps in which bodies would have touched: none was made. Anything but none is a bug of a
@@ -193,12 +195,21 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.tick += 1;
     }
 
-    /// A robot goes on after a stop, with the map that it has.
+    /// A robot goes on after a stop, with the map that it has and with new energy.
     pub fn resume(&mut self, robot: usize) {
         if let Some(robot) = self.robots.get_mut(robot).filter(|robot| robot.alive) {
+            if self.rules.energy > 0 {
+                robot.planner.energy(self.rules.energy);
+            }
             robot.planner.resume();
             robot.step = None;
         }
+    }
+
+    /// A robot is told to go home. False where it is not there, or knows no way home.
+    pub fn go_home(&mut self, robot: usize) -> bool {
+        let robot = self.robots.get_mut(robot).filter(|robot| robot.alive);
+        robot.is_some_and(|robot| robot.planner.go_home())
     }
 
     /// Deaths, arrivals and restarts of this tick, and who goes on.

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::baselines::{
     Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, Rule, StrongMinPos, Utility,
 };
+use crate::scenario::Mission;
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]
@@ -58,6 +59,8 @@ pub struct Setup {
     pub sensor: SensorModel,
     /// Cells that its body reaches beyond its own, if it [has a body](PlannerKind::has_body).
     pub clearance: u8,
+    /// What it is sent out with, if it [knows home](PlannerKind::knows_home).
+    pub mission: Mission,
 }
 
 impl PlannerKind {
@@ -87,6 +90,11 @@ impl PlannerKind {
         self == Self::Explorer
     }
 
+    /// Whether it can be sent home, and told how far it can go.
+    pub fn knows_home(self) -> bool {
+        self == Self::Explorer
+    }
+
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {
@@ -94,6 +102,7 @@ impl PlannerKind {
             link,
             sensor,
             clearance,
+            mission,
             ..
         } = setup;
         let local_frontiers = |second_chance| {
@@ -108,6 +117,8 @@ impl PlannerKind {
                 link,
                 sensor,
                 clearance,
+                come_home: mission.come_home,
+                energy: mission.energy,
                 ..explorer::Config::new()
             })),
             Self::LocalFrontiers => Some(local_frontiers(false)),

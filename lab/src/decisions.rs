@@ -102,6 +102,9 @@ fn stop(reason: Reason) -> &'static str {
         Reason::OutOfReach => "stops: complete, no way leads to what else is in sight",
         Reason::Unseen => "gives up: no look shows what is left",
         Reason::Held => "gives up: a robot stayed in the way",
+        Reason::Home => "stops: home",
+        Reason::Arrived => "stops: where it was sent",
+        Reason::NoWay => "gives up: no known way leads to where it was to go",
     }
 }
 

@@ -50,6 +50,11 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             robot.cells_known,
         );
     }
+    if summary.head.conditions.mission.come_home || summary.head.conditions.mission.energy > 0 {
+        let home = summary.robots.iter().filter(|robot| robot.is_home).count();
+        let robots = summary.robots.len();
+        println!("  at home            {home} of {robots} robots");
+    }
     if !summary.head.conditions.trouble.is_none() {
         println!(
             "  bumps              {} steps into what was not seen",

@@ -12,7 +12,7 @@ use crate::fleet::{Fleet, Rules};
 use crate::medium;
 use crate::planners::{PlannerKind, Setup};
 use crate::scenario::grid::default_max_ticks;
-use crate::scenario::{Conditions, Forger, Forgery, MediumKind};
+use crate::scenario::{Conditions, Forger, Forgery, MediumKind, Mission};
 use crate::sensor::Sensor;
 use crate::world::{Starts, World, WorldError};
 
@@ -98,6 +98,7 @@ fn explore(
             link: LinkConfig::new(),
             sensor: SensorModel::truthful(),
             clearance: 0,
+            mission: Mission::default(),
         };
         PlannerKind::Explorer
             .build(setup)

@@ -13,7 +13,7 @@ use super::line::{Line, LineError};
 use super::protocol::{FromRobot, FromWorld, go};
 use crate::excerpt::excerpt;
 use crate::planners::{PlannerKind, Setup};
-use crate::scenario::Preset;
+use crate::scenario::{Mission, Preset};
 
 /// Longest silence of the world.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -175,6 +175,7 @@ impl<const TW: usize, const TH: usize> Body<TW, TH> {
                 link: options.link,
                 sensor: options.preset.model(),
                 clearance: 0,
+                mission: Mission::default(),
             })
             .map_err(|error| LiveError::Place {
                 address: options.world,

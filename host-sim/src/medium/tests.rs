@@ -13,7 +13,9 @@ use super::{Fate, Medium, build};
 use crate::fleet::{Fleet, Rules};
 use crate::planners::{PlannerKind, Setup};
 use crate::robot::Robot;
-use crate::scenario::{AirFaults, Conditions, Event, Faults, MediumKind, Partition, Reach};
+use crate::scenario::{
+    AirFaults, Conditions, Event, Faults, MediumKind, Mission, Partition, Reach,
+};
 use crate::sensor::Sensor;
 use crate::world::{Family, Starts, World, generate};
 
@@ -88,7 +90,7 @@ proptest! {
         let fleet = |medium| {
             let extent = world.extent();
             let planners = Box::new(move |id, start| {
-                planner.build(Setup { id, extent, start, link: LinkConfig::new(), sensor: SensorModel::truthful(), clearance: 0 }).unwrap()
+                planner.build(Setup { id, extent, start, link: LinkConfig::new(), sensor: SensorModel::truthful(), clearance: 0, mission: Mission::default() }).unwrap()
             });
             let sensor = Arc::new(Sensor::new(world.clone(), 4));
             Fleet::<SIDE, SIDE>::new(sensor, medium, rules.clone(), planners, &starts)
@@ -207,6 +209,7 @@ fn fates(kind: MediumKind, faults: AirFaults, loss: f64) -> [usize; 4] {
             link,
             sensor: SensorModel::truthful(),
             clearance: 0,
+            mission: Mission::default(),
         };
         PlannerKind::Explorer.build(setup).unwrap()
     });

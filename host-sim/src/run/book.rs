@@ -56,6 +56,7 @@ impl Book {
                     work: 0,
                     sent: Sent::default(),
                     stop: None,
+                    is_home: false,
                     alive: true,
                     is_lost: false,
                     hearsay: Hearsay::default(),
@@ -158,6 +159,9 @@ impl Book {
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
+            // Where bodies exchange roles, those that come home may have started elsewhere.
+            noted.is_home = robot.position == start
+                || scenario.solid && scenario.starts.contains(&robot.position);
             noted.is_lost = robot.planner.is_lost();
             noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();

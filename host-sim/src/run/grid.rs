@@ -130,7 +130,9 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
         faults: scenario.conditions.faults.clone(),
         trouble: scenario.conditions.trouble,
         seed: scenario.conditions.seed,
+        energy: scenario.conditions.mission.energy,
     };
+    let mission = scenario.conditions.mission;
     let link = scenario.conditions.link();
     let sensor_model = scenario.conditions.preset.model();
     let (host, kind, clearance) = (host.clone(), scenario.planner, scenario.clearance);
@@ -152,6 +154,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
             link,
             sensor: sensor_model,
             clearance,
+            mission,
         };
         host.planner(kind, setup)
     });

@@ -72,6 +72,8 @@ pub struct RobotOutcome {
     pub sent: Sent,
     /// Why it stopped; `None` if it did not.
     pub stop: Option<Stop>,
+    /// Whether it stands where it started; where bodies exchange roles, where any robot did.
+    pub is_home: bool,
     /// Whether it lived to the end of the run.
     pub alive: bool,
     /// Whether what it sees contradicts its map in the end, as far as its planner tells.

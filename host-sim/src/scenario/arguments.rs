@@ -5,8 +5,8 @@ use clap::{Args, Command, FromArgMatches};
 use planner_core::radio::{Key, LinkConfig};
 
 use super::{
-    AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, Partition, Preset, Reach,
-    RobotSpan, ScenarioError, TroubleArgs, key,
+    AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, MissionArgs, Partition,
+    Preset, Reach, RobotSpan, ScenarioError, TroubleArgs, key,
 };
 
 /// The options of a robot's radio.
@@ -119,6 +119,8 @@ pub struct ConditionsArgs {
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
     #[command(flatten)]
+    mission: MissionArgs,
+    #[command(flatten)]
     trouble: TroubleArgs,
 }
 
@@ -150,6 +152,7 @@ impl ConditionsArgs {
             faults,
             trouble,
             preset,
+            mission,
         } = conditions;
         let AirFaults {
             reach,
@@ -194,6 +197,7 @@ impl ConditionsArgs {
         lost_poses.extend(self.pose_lost);
         *trouble = self.trouble.over(*trouble);
         replace(preset, self.preset);
+        *mission = self.mission.over(*mission);
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
             _ => Ok(()),
@@ -238,6 +242,7 @@ impl Conditions {
             faults,
             trouble,
             preset,
+            mission,
         } = self;
         let AirFaults {
             reach,
@@ -295,6 +300,7 @@ impl Conditions {
         settings.extend(all("blind", blind));
         settings.extend(all("sensor-fails", sensor_failures));
         settings.extend(all("pose-lost", lost_poses));
+        settings.extend(mission.settings());
         settings.extend(trouble.settings(&usual.trouble));
         settings
     }

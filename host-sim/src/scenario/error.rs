@@ -44,6 +44,11 @@ pub enum ScenarioError {
         planner: PlannerKind,
         preset: Preset,
     },
+    #[error("--{option}: planner {planner} knows no way home; the explorer does")]
+    NeverHome {
+        option: &'static str,
+        planner: PlannerKind,
+    },
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start { robot: usize, start: Cell },
     #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]

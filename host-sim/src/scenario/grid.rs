@@ -80,6 +80,12 @@ impl Scenario {
             });
         }
         self.check_body()?;
+        let planner = self.planner;
+        if let Some((option, _)) = self.conditions.mission.settings().first()
+            && !planner.knows_home()
+        {
+            return Err(ScenarioError::NeverHome { option, planner });
+        }
         self.check_fault_cells()?;
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {

@@ -8,6 +8,7 @@ mod faults;
 pub mod grid;
 pub mod heights;
 mod key;
+mod mission;
 mod trouble;
 pub mod voxels;
 
@@ -18,6 +19,7 @@ pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
+pub use mission::{Mission, MissionArgs};
 pub use trouble::{ErrorKind, Preset, Trouble, TroubleArgs};
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.
@@ -57,6 +59,9 @@ pub struct Conditions {
     /// What robots take their sensors for.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub preset: Preset,
+    /// What robots are sent out with.
+    #[serde(default, skip_serializing_if = "Mission::is_none")]
+    pub mission: Mission,
 }
 
 fn is_usual(preset: &Preset) -> bool {
@@ -83,6 +88,7 @@ impl Conditions {
             faults: Faults::default(),
             trouble: Trouble::default(),
             preset: Preset::default(),
+            mission: Mission::default(),
         }
     }
 
@@ -173,8 +179,9 @@ impl Conditions {
             ("pose-lost", !faults.lost_poses.is_empty()),
         ];
         let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
-        let trouble = self.trouble.settings(&Trouble::default());
-        let named = trouble.iter().map(|(option, _)| *option);
+        let mut settings = self.trouble.settings(&Trouble::default());
+        settings.extend(self.mission.settings());
+        let named = settings.iter().map(|(option, _)| *option);
         match used.map(|(option, _)| option).chain(named).next() {
             Some(option) => Err(ScenarioError::NotHere { option, world }),
             None => Ok(()),

@@ -100,6 +100,8 @@ pub struct RobotSummary {
     pub stop_reason: Option<String>,
     /// Whether it says that all that it can reach is known, while something is not.
     pub claims_falsely: bool,
+    /// Whether it stands where it started; where bodies exchange roles, where any robot did.
+    pub is_home: bool,
     /// Whether it lived to the end of the run.
     pub alive: bool,
     /// Whether what it sees contradicts its map in the end, as far as its planner tells.
@@ -177,6 +179,7 @@ impl RobotSummary {
             stop: robot.stop.map(|stop| stop.reason().name()),
             stop_reason: robot.stop.map(|stop| stop.to_string()),
             claims_falsely: robot.claims_falsely(),
+            is_home: robot.is_home,
             alive: robot.alive,
             is_lost: robot.is_lost,
             hearsay: robot.hearsay,

@@ -55,6 +55,15 @@ impl Budget {
         }
     }
 
+    /// At home, with so much energy; 0: no limit.
+    pub(super) const fn of(energy: u32) -> Self {
+        let mut budget = Self::new();
+        if energy > 0 {
+            budget.energy = Maybe::Just(energy);
+        }
+        budget
+    }
+
     pub(super) const fn is_limited(&self) -> bool {
         matches!(self.energy, Maybe::Just(_))
     }

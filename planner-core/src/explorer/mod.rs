@@ -95,6 +95,9 @@
 //! it would be touched (2). "Complete" then means that the map holds every cell that the
 //! body can sweep from where it is; of what it cannot enter, as much as was seen on the way
 //! ([`Inspect::narrow_cells`]).
+//! A robot on an errand, or with little energy, decides by `mission`, which says why that
+//! ends too: an errand is begun by the user or when the robot is done, once for each thing
+//! learnt.
 //!
 //! # Why its reason is true
 //! The robot's last wave covered every cell that free cells connect with it. If nothing was
@@ -208,6 +211,9 @@ pub struct Config {
     /// Whether a robot that has explored goes home, to where it started, before it stops;
     /// see [`Errands`](crate::planner::Errands).
     pub come_home: bool,
+    /// Steps that the robot's energy lasts for, as by
+    /// [`Errands::energy`](crate::planner::Errands::energy) at the start; 0: no limit.
+    pub energy: u32,
     /// How far looks are believed.
     pub sensor: SensorModel,
     /// How the radio is used.
@@ -231,6 +237,7 @@ impl Config {
             patrol: 0,
             clearance: 0,
             come_home: false,
+            energy: 0,
             sensor: SensorModel::truthful(),
             link: LinkConfig::new(),
         }
@@ -327,6 +334,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 patrol: 0,
                 clearance: 0,
                 come_home: false,
+                energy: 0,
                 sensor: SensorModel::vacant(),
                 link: LinkConfig::vacant(),
             },
@@ -401,7 +409,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.others = Others::new();
         self.link.reset(config.link, id, extent);
         self.far.cancel();
-        self.budget = Budget::new();
+        self.budget = Budget::of(config.energy);
         self.last_goal = None;
         self.far_again = 0;
         self.patrol_again = 0;

@@ -233,9 +233,23 @@ proptest! {
         }
     }
 
+    /// Cells that refuse for good, robots in the way: it stops, and while it walks its
+    /// energy lasts for the way that it knows.
+    #[test]
+    fn every_robot_in_trouble_stops_with_its_energy(scene in limited(true)) {
+        let ended = run(&scene, 200_000);
+        for (robot, stop) in ended.robots.iter().zip(&ended.stops) {
+            prop_assert!(stop.is_some(), "still running at {}", robot.around.position);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(soak())]
+
     /// That no robot is caught out is asserted in each tick.
     #[test]
-    fn no_robot_is_caught_out(mut scene in limited(false)) {
+    fn every_robot_comes_home_in_time(mut scene in limited(false)) {
         // Bodies that do not exchange roles can be in each other's way for good.
         scene.solid &= scene.start.len() == 1;
         let ended = run(&scene, 100_000);
@@ -248,16 +262,6 @@ proptest! {
             prop_assert!(stop.is_complete() || matches!(stop, Stop::Home { .. }), "{}", stop);
             let must_be_home = scene.config.come_home || !stop.is_complete();
             prop_assert!(is_home || !must_be_home, "at {}: {}", robot.around.position, stop);
-        }
-    }
-
-    /// Cells that refuse for good, robots in the way: it stops, and while it walks its
-    /// energy lasts for the way that it knows.
-    #[test]
-    fn every_robot_in_trouble_stops_with_its_energy(scene in limited(true)) {
-        let ended = run(&scene, 200_000);
-        for (robot, stop) in ended.robots.iter().zip(&ended.stops) {
-            prop_assert!(stop.is_some(), "still running at {}", robot.around.position);
         }
     }
 }

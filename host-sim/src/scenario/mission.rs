@@ -1,0 +1,50 @@
+//! Where robots go when they have explored, and how far they can go.
+
+use clap::Args;
+use serde::{Deserialize, Serialize};
+
+/// What robots are sent out with. Nothing of it by default; the explorer's alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Mission {
+    /// Whether a robot that has explored goes home, to where it started, before it stops.
+    pub come_home: bool,
+    /// Steps that the energy of a robot lasts for, and again when it is told to go on; 0: no
+    /// limit.
+    pub energy: u32,
+}
+
+impl Mission {
+    pub(super) fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// What is set, as names and values of options.
+    pub(super) fn settings(&self) -> Vec<(&'static str, String)> {
+        let come_home = self.come_home.then(|| ("come-home", String::new()));
+        let energy = (self.energy > 0).then(|| ("energy", self.energy.to_string()));
+        come_home.into_iter().chain(energy).collect()
+    }
+}
+
+/// The options that set a [`Mission`].
+#[derive(Args, Clone, Copy)]
+pub struct MissionArgs {
+    /// A robot that has explored goes home, to where it started, before it stops. The
+    /// explorer's alone.
+    #[arg(long)]
+    come_home: bool,
+    /// Steps that a robot's energy lasts for: it turns back in time, and stops at home. With
+    /// --resume it goes on with as much again. The explorer's alone.
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    energy: Option<u32>,
+}
+
+impl MissionArgs {
+    pub(super) fn over(self, mission: Mission) -> Mission {
+        Mission {
+            come_home: self.come_home || mission.come_home,
+            energy: self.energy.unwrap_or(mission.energy),
+        }
+    }
+}

@@ -70,8 +70,9 @@ typedef enum {
   PLANNER_RESULT_MOTION = 7,
   // `cell_mm` is 0.
   PLANNER_RESULT_CELL_SIZE = 9,
-  // The robot's place lies off the grid, so nothing was learnt. The planner decides
-  // nothing and waits, for `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+  // The cell that the robot is to go to lies off the grid, and nothing has changed. Or its
+  // own place does, so nothing was learnt: the planner decides nothing and waits, for
+  // `PLANNER_WAIT_POSE`, until a place lies on the grid again.
   PLANNER_RESULT_OFF_GRID = 10,
   // No frame has this length: cut short, or followed by something else.
   PLANNER_RESULT_FRAME_LENGTH = 11,
@@ -146,6 +147,13 @@ typedef enum {
   PLANNER_STOP_UNSEEN = 8,
   // Gave up: a robot stayed in the way at `at`, `frontiers` cells are left.
   PLANNER_STOP_HELD = 9,
+  // Back where it started, as it was told or for its energy; `frontiers` cells are left.
+  PLANNER_STOP_HOME = 10,
+  // At the cell `at` that it was sent to; `frontiers` cells are left.
+  PLANNER_STOP_ARRIVED = 11,
+  // Gave up: over cells that are known to be free no way leads to `at`, where it was to
+  // go; `frontiers` cells are left.
+  PLANNER_STOP_NO_WAY = 12,
 } PlannerStop;
 
 // Why the robot waits.
@@ -253,6 +261,8 @@ typedef struct {
   // Cells that the robot's body reaches beyond the one of its centre, in a disc: 0 to 3,
   // the same for all robots. Looks have to show what is within `clearance` + 2 cells.
   uint8_t clearance;
+  // Not 0: a robot that has explored goes home, to where it started, before it stops.
+  uint8_t come_home;
 } PlannerConfig;
 
 // A direction relative to the heading, as a vector of length 1; `planner_bearing` makes
@@ -405,6 +415,27 @@ PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 //
 // Stack: 128 bytes.
 PlannerResult planner_resume(Planner *planner);
+
+// Sends the robot home, to where it started, also from a stop. It stops there with
+// `PLANNER_STOP_HOME`, or says why not: `PLANNER_STOP_NO_WAY`, `PLANNER_STOP_BLOCKED` or
+// `PLANNER_STOP_HELD`. `planner_resume` then goes on exploring.
+//
+// Stack: 128 bytes.
+PlannerResult planner_go_home(Planner *planner);
+
+// As `planner_go_home`, to any cell: it stops there with `PLANNER_STOP_ARRIVED`. Off the
+// grid: `PLANNER_RESULT_OFF_GRID`, and nothing has changed.
+//
+// Stack: 128 bytes.
+PlannerResult planner_go_to(Planner *planner, PlannerCell cell);
+
+// Says how many steps the robot's energy lasts for; each step that it makes takes one off
+// until it is told again. It turns back while that lasts for the shortest way home that it
+// knows, and stops there with `PLANNER_STOP_HOME`; told more, `planner_resume` goes on
+// exploring. Without this call there is no limit.
+//
+// Stack: 128 bytes.
+PlannerResult planner_energy(Planner *planner, uint32_t steps);
 
 // Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 // it could reach within its map; otherwise it gave up.

@@ -15,7 +15,7 @@ use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
-use planner_core::{Cell, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
+use planner_core::{Cell, Errands as _, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
 pub use place::{PLANNER_MAX_CELLS, PLANNER_WORDS, Planner};
 pub use queries::{
@@ -85,6 +85,7 @@ pub extern "C" fn planner_create(
             return Err(PlannerResult::Clearance);
         }
         explorer.clearance = config.clearance;
+        explorer.come_home = config.come_home != 0;
         explorer.link = LinkConfig {
             origin_mm: (config.origin_x_mm, config.origin_y_mm),
             cell_mm: config.cell_mm,
@@ -208,6 +209,45 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
 pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
     answer(|| {
         robot(planner)?.explorer.resume();
+        Ok(())
+    })
+}
+
+/// Sends the robot home, to where it started, also from a stop. It stops there with
+/// `PLANNER_STOP_HOME`, or says why not: `PLANNER_STOP_NO_WAY`, `PLANNER_STOP_BLOCKED` or
+/// `PLANNER_STOP_HELD`. `planner_resume` then goes on exploring.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_go_home(planner: *mut Planner) -> PlannerResult {
+    answer(|| {
+        robot(planner)?.explorer.go_home();
+        Ok(())
+    })
+}
+
+/// As `planner_go_home`, to any cell: it stops there with `PLANNER_STOP_ARRIVED`. Off the
+/// grid: `PLANNER_RESULT_OFF_GRID`, and nothing has changed.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_go_to(planner: *mut Planner, cell: PlannerCell) -> PlannerResult {
+    answer(|| {
+        let is_sent = robot(planner)?.explorer.go_to(Cell::new(cell.x, cell.y));
+        is_sent.then_some(()).ok_or(PlannerResult::OffGrid)
+    })
+}
+
+/// Says how many steps the robot's energy lasts for; each step that it makes takes one off
+/// until it is told again. It turns back while that lasts for the shortest way home that it
+/// knows, and stops there with `PLANNER_STOP_HOME`; told more, `planner_resume` goes on
+/// exploring. Without this call there is no limit.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_energy(planner: *mut Planner, steps: u32) -> PlannerResult {
+    answer(|| {
+        robot(planner)?.explorer.energy(steps);
         Ok(())
     })
 }

@@ -242,7 +242,7 @@ pub(crate) const RESULTS: [&CStr; 22] = [
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop).
-pub(crate) const STOPS: [&CStr; 10] = [
+pub(crate) const STOPS: [&CStr; 13] = [
     c"exploring",
     c"complete",
     c"complete: what is left is enclosed",
@@ -253,6 +253,9 @@ pub(crate) const STOPS: [&CStr; 10] = [
     c"complete: what is left is out of reach",
     c"gave up: a cell that no look shows",
     c"gave up: a robot stayed in the way",
+    c"home",
+    c"where it was sent",
+    c"gave up: no known way leads there",
 ];
 
 /// By [`PlannerWait`](crate::PlannerWait).

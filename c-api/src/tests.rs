@@ -22,6 +22,7 @@ const CONFIG: PlannerConfig = PlannerConfig {
     sure_range: 0,
     patrol_ticks: 0,
     clearance: 0,
+    come_home: 0,
 };
 
 const SIZE: usize = size_of::<Planner>();
@@ -88,6 +89,8 @@ fn a_header_of_another_size_is_answered() {
     let smaller = planner_create(place, SIZE - 8, &CONFIG);
     assert_eq!(smaller, PlannerResult::Memory);
     assert_eq!(planner_resume(place), PlannerResult::NotCreated);
+    assert_eq!(planner_go_home(place), PlannerResult::NotCreated);
+    assert_eq!(planner_energy(place, 9), PlannerResult::NotCreated);
     assert_eq!(planner_create(place, SIZE + 8, &CONFIG), PlannerResult::Ok);
 }
 
@@ -124,6 +127,9 @@ fn null_is_answered() {
         planner_pose_from_metres(&CONFIG, 0.0, 0.0, 0.0, null_mut()),
         planner_middle_in_metres(&CONFIG, centre, null_mut(), null_mut()),
         planner_resume(null_mut()),
+        planner_go_home(null_mut()),
+        planner_go_to(null_mut(), PlannerCell { x: 0, y: 0 }),
+        planner_energy(null_mut(), 9),
         planner_is_mute(ready, null_mut()),
         planner_waypoint(ready, null_mut(), null_mut()),
         planner_way(ready, null_mut(), 0, null_mut()),
@@ -446,6 +452,9 @@ fn stops_have_the_codes_of_traces_and_one_more() {
         Stop::OutOfReach { frontiers },
         Stop::Unseen { frontiers, at },
         Stop::Held { frontiers, at },
+        Stop::Home { frontiers },
+        Stop::Arrived { frontiers, at },
+        Stop::NoWay { frontiers, at },
     ];
     for (stop, code) in stops.into_iter().zip(1..) {
         let told = PlannerAction::new(Action::Stop(stop), None);
@@ -467,6 +476,58 @@ fn stops_have_the_codes_of_traces_and_one_more() {
     for none in [PlannerStop::None as u8, stops.len() as u8 + 1, 255] {
         assert!(!planner_stop_is_complete(none));
     }
+}
+
+#[test]
+fn a_robot_is_sent_and_comes_home() {
+    let mut memory = memory();
+    let ready = created(&mut memory, CONFIG);
+    let start = CONFIG.start;
+    let seen: Vec<PlannerSeen> = (0..3)
+        .map(|step| PlannerSeen {
+            cell: PlannerCell {
+                x: start.x + step,
+                y: start.y,
+            },
+            blocked: 0,
+        })
+        .collect();
+    let observe = |x: i16| {
+        let here = PlannerCell { x, y: start.y };
+        let told = planner_observe_cells(ready, here, seen.as_ptr(), seen.len());
+        assert_eq!(told, PlannerResult::Ok);
+    };
+    let run = |mut x: i16| {
+        for _ in 0..100 {
+            observe(x);
+            let action = tick(ready);
+            match action.kind {
+                PlannerActionKind::Stop => return (x, action),
+                PlannerActionKind::Move => {
+                    x += Direction::from_index(action.direction as u8).delta().0;
+                    assert_eq!(planner_report(ready, PLANNER_MOVED), PlannerResult::Ok);
+                }
+                PlannerActionKind::Wait => {}
+            }
+        }
+        panic!("still running at {x}");
+    };
+    let off = PlannerCell { x: -1, y: 0 };
+    assert_eq!(planner_go_to(ready, off), PlannerResult::OffGrid);
+    let to = PlannerCell {
+        x: start.x + 2,
+        y: start.y,
+    };
+    observe(start.x);
+    assert_eq!(planner_go_to(ready, to), PlannerResult::Ok);
+    let (x, arrived) = run(start.x);
+    assert_eq!((x, arrived.stop), (to.x, PlannerStop::Arrived));
+    assert_eq!(planner_energy(ready, 2), PlannerResult::Ok);
+    assert_eq!(planner_resume(ready), PlannerResult::Ok);
+    let (x, home) = run(x);
+    assert_eq!((x, home.stop), (start.x, PlannerStop::Home));
+    assert_eq!(planner_go_home(ready), PlannerResult::Ok);
+    assert_eq!(tick(ready).stop, PlannerStop::Home);
 }
 
 #[test]

@@ -30,8 +30,9 @@ pub enum PlannerResult {
     // 8 was any frame that was not taken.
     /// `cell_mm` is 0.
     CellSize = 9,
-    /// The robot's place lies off the grid, so nothing was learnt. The planner decides
-    /// nothing and waits, for `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+    /// The cell that the robot is to go to lies off the grid, and nothing has changed. Or its
+    /// own place does, so nothing was learnt: the planner decides nothing and waits, for
+    /// `PLANNER_WAIT_POSE`, until a place lies on the grid again.
     OffGrid = 10,
     /// No frame has this length: cut short, or followed by something else.
     FrameLength = 11,
@@ -190,6 +191,8 @@ pub struct PlannerConfig {
     /// Cells that the robot's body reaches beyond the one of its centre, in a disc: 0 to 3,
     /// the same for all robots. Looks have to show what is within `clearance` + 2 cells.
     pub clearance: u8,
+    /// Not 0: a robot that has explored goes home, to where it started, before it stops.
+    pub come_home: u8,
 }
 
 /// How far the looks of a sensor can be believed.
@@ -334,6 +337,13 @@ pub enum PlannerStop {
     Unseen = 8,
     /// Gave up: a robot stayed in the way at `at`, `frontiers` cells are left.
     Held = 9,
+    /// Back where it started, as it was told or for its energy; `frontiers` cells are left.
+    Home = 10,
+    /// At the cell `at` that it was sent to; `frontiers` cells are left.
+    Arrived = 11,
+    /// Gave up: over cells that are known to be free no way leads to `at`, where it was to
+    /// go; `frontiers` cells are left.
+    NoWay = 12,
 }
 
 impl From<Reason> for PlannerStop {
@@ -348,6 +358,9 @@ impl From<Reason> for PlannerStop {
             Reason::OutOfReach => Self::OutOfReach,
             Reason::Unseen => Self::Unseen,
             Reason::Held => Self::Held,
+            Reason::Home => Self::Home,
+            Reason::Arrived => Self::Arrived,
+            Reason::NoWay => Self::NoWay,
         }
     }
 }

@@ -49,6 +49,9 @@ static void nothing_is_created(Planner *planner) {
     CHECK(planner_tick(planner, &action), wanted);
     CHECK(planner_report(planner, PLANNER_MOVED), wanted);
     CHECK(planner_resume(planner), wanted);
+    CHECK(planner_go_home(planner), wanted);
+    CHECK(planner_go_to(planner, (PlannerCell){5, 5}), wanted);
+    CHECK(planner_energy(planner, 9), wanted);
     CHECK(planner_transmit(planner, frame, &length), wanted);
     CHECK(planner_receive(planner, frame, 16), wanted);
     CHECK(planner_status(planner, &status), wanted);

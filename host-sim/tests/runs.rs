@@ -472,30 +472,6 @@ fn bodies_of_every_size_explore_halls_and_caves() {
             assert!(stop.is_complete() || is_held, "{what}: {stop}");
             assert!(!robot.claims_falsely(), "{what}: {stop}");
         }
-#[test]
-fn robots_that_have_explored_come_home_and_nobody_else_can() {
-    for solid in [false, true] {
-        let mut scenario = scenario(PlannerKind::Explorer, Family::Rooms, 5);
-        scenario.solid = solid;
-        scenario.conditions.mission.come_home = true;
-        scenario.starts.dedup();
-        let (outcome, _) = run(&scenario);
-        assert!(outcome.is_complete());
-        let mut robots = outcome.robots.iter();
-        assert!(robots.all(|robot| robot.is_home), "{:?}", outcome.robots);
-    }
-    for &planner in PlannerKind::value_variants() {
-        let mut scenario = scenario(planner, Family::Rooms, 5);
-        scenario.conditions.mission.come_home = true;
-        let refused = ScenarioError::NeverHome {
-            option: "come-home",
-            planner,
-        };
-        let expected = match planner {
-            PlannerKind::Explorer => Ok(()),
-            _ => Err(refused),
-        };
-        assert_eq!(scenario.check(), expected);
     }
 }
 
@@ -537,13 +513,44 @@ fn bodies_start_where_they_have_room() {
     ));
     assert!(world.place_bodies(1, &Starts::At(vec![first]), 1).is_err());
     assert!(world.place_bodies(90, &Starts::Center, 1).is_err());
+}
+
+#[test]
+fn robots_that_have_explored_come_home_and_nobody_else_can() {
+    for solid in [false, true] {
+        let mut scenario = scenario(PlannerKind::Explorer, Family::Rooms, 5);
+        scenario.solid = solid;
+        scenario.conditions.mission.come_home = true;
+        scenario.starts.dedup();
+        let (outcome, _) = run(&scenario);
+        assert!(outcome.is_complete());
+        let mut robots = outcome.robots.iter();
+        assert!(robots.all(|robot| robot.is_home), "{:?}", outcome.robots);
+    }
+    for &planner in PlannerKind::value_variants() {
+        let mut scenario = scenario(planner, Family::Rooms, 5);
+        scenario.conditions.mission.come_home = true;
+        let refused = ScenarioError::NeverHome {
+            option: "come-home",
+            planner,
+        };
+        let expected = match planner {
+            PlannerKind::Explorer => Ok(()),
+            _ => Err(refused),
+        };
+        assert_eq!(scenario.check(), expected);
+    }
+}
+
+#[test]
 fn robots_come_home_with_their_energy_and_go_on_with_more() {
     let mut scenario = scenario(PlannerKind::Explorer, Family::Cave, 7);
-    scenario.conditions.mission.energy = 60;
+    scenario.conditions.mission.energy = 20;
+    scenario.conditions.mission.come_home = true;
     let (outcome, trace) = run(&scenario);
     assert!(!outcome.is_complete());
     for robot in &outcome.robots {
-        assert!(robot.is_home && robot.steps <= 60, "{robot:?}");
+        assert!(robot.is_home && robot.steps <= 20, "{robot:?}");
         let stop = robot.stop.map(|stop| stop.reason());
         assert_eq!(stop, Some(Reason::Home));
     }
@@ -553,7 +560,10 @@ fn robots_come_home_with_their_energy_and_go_on_with_more() {
         tick: last,
     };
     scenario.conditions.faults.resumes = (0..4).map(go_on).collect();
-    let (outcome, _) = run(&scenario);
-    let mut robots = outcome.robots.iter();
-    assert!(robots.all(|robot| robot.is_home && robot.steps > 60 && robot.steps <= 120));
+    let (later, _) = run(&scenario);
+    let more = later.robots.iter().zip(&outcome.robots);
+    for (later, before) in more {
+        assert!(later.is_home && later.steps <= before.steps + 20);
+    }
+    assert!(later.seen_cells > outcome.seen_cells);
 }

@@ -282,7 +282,7 @@ fn cell(text: &str) -> Option<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host_sim::scenario::{AirFaults, ErrorKind, Faults, Preset, Reach, Trouble};
+    use host_sim::scenario::{AirFaults, ErrorKind, Faults, Mission, Preset, Reach, Trouble};
     use planner_core::Extent;
 
     fn unusual() -> Setup {
@@ -338,6 +338,10 @@ mod tests {
                     looks: 3,
                 },
                 preset: Preset::Rangers,
+                mission: Mission {
+                    come_home: true,
+                    energy: 70,
+                },
             },
         }
     }

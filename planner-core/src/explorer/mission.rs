@@ -137,8 +137,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     /// A step of the way, or what it takes to find one.
     fn walk(&mut self, errand: Errand) -> Action {
-        let mut step = self.next_step();
-        if step.is_none() {
+        if self.next_step().is_none() {
             // In another body it was a way.
             let was_way = self.role.plan.take().is_some_and(|of| !of.path.is_empty());
             self.role.lost = self.role.lost.saturating_add(u8::from(was_way));
@@ -146,7 +145,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 // Rather than a way round that it cannot make, it tries again.
                 Outcome::Found(way) if self.budget.lasts_for(way.length) || !self.may_open() => {
                     self.take(way);
-                    step = self.next_step();
                 }
                 Outcome::Found(_) | Outcome::Lost => {
                     if let Some(why_not) = self.why_no_way(errand.to) {
@@ -157,17 +155,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 _ => {}
             }
         }
-        match step {
-            Some(step) if self.vetoes(step) => self.wait(Wait::Obstructed),
-            Some(step) => {
-                self.stepping = true;
-                Action::Move(step)
-            }
-            None => match self.waiting.get() {
-                Some(reason) => self.wait(reason),
-                None => self.wait(Wait::Search),
-            },
-        }
+        self.act()
     }
 
     /// The errand stays: where others pass by exchanges of bodies, the robot goes back.

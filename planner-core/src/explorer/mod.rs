@@ -498,6 +498,23 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         Action::Wait
     }
 
+    /// Makes the next step of the plan, or waits.
+    fn act(&mut self) -> Action {
+        match self.next_step() {
+            Some(step) if self.vetoes(step) || self.keeps_apart(step) => {
+                self.wait(Wait::Obstructed)
+            }
+            Some(step) => {
+                self.stepping = true;
+                Action::Move(step)
+            }
+            None => {
+                let reason = self.waiting.get().unwrap_or(Wait::Search);
+                self.wait(reason)
+            }
+        }
+    }
+
     /// The next step of the plan, if it can be made.
     fn next_step(&self) -> Option<Direction> {
         let step = self.role.plan.as_ref()?.path.first()?;
@@ -617,19 +634,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
                 }
             }
         }
-        match self.next_step() {
-            Some(step) if self.vetoes(step) || self.keeps_apart(step) => {
-                self.wait(Wait::Obstructed)
-            }
-            Some(step) => {
-                self.stepping = true;
-                Action::Move(step)
-            }
-            None => match self.waiting.get() {
-                Some(reason) => self.wait(reason),
-                None => self.wait(Wait::Search),
-            },
-        }
+        self.act()
     }
 
     fn waiting(&self) -> Option<Wait> {

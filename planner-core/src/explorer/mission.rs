@@ -4,10 +4,10 @@
 //! Let E be the steps that the energy lasts for, and D those of the shortest way home over
 //! cells that can be entered. The robot makes a step that may lead away only if h + 2 ≤ E,
 //! where h ≥ D: h grows by one with each step, for it can go back, and is D after a search.
-//! So D ≤ E before and after each step. Where the rule forbids a step, it searches; if D + 2
-//! > E even so, it goes home, and each step of a shortest way takes one off both. A wall
-//! that appears, or a cell that refuses, may be on the way that h counts: then h is not
-//! known until a search has found it.
+//! So D ≤ E before and after each step. Where the rule forbids a step, it searches; if even
+//! so D + 2 is more than E, it goes home, and each step of a shortest way takes one off
+//! both. A wall that appears, or a cell that refuses, may be on the way that h counts: then
+//! h is not known until a search has found it.
 //!
 //! # Why an errand ends
 //! As in the proof of the whole: nothing is learnt and nothing is set aside but a bounded

@@ -27,19 +27,53 @@ const REACH: [[u8; 4]; MAX_CLEARANCE as usize + 1] =
 
 /// Cells to each side of the middle of a disc, row by row: row, and reach in it.
 fn rows_of(clearance: u8) -> impl Iterator<Item = (i16, i16)> {
-    let reach = REACH.get(usize::from(clearance)).copied().unwrap_or([0; 4]);
     let last = i16::from(clearance);
-    (-last..=last).map(move |dy| {
-        let reach = reach.get(usize::from(dy.unsigned_abs()));
-        (dy, i16::from(reach.copied().unwrap_or(0)))
-    })
+    (-last..=last).map(move |dy| (dy, reach_in(clearance, dy)))
 }
 
 /// The cells that a body with its centre in a cell lies in, see
-/// [`Config::clearance`](super::Config::clearance).
+/// [`Config::clearance`](super::Config::clearance), row by row.
 pub fn body_cells(clearance: u8, centre: Cell) -> impl Iterator<Item = Cell> {
-    rows_of(clearance)
-        .flat_map(move |(dy, reach)| (-reach..=reach).map(move |dx| moved(centre, dx, dy)))
+    let last = i16::from(clearance.min(MAX_CLEARANCE));
+    BodyCells {
+        clearance,
+        centre,
+        dx: -reach_in(clearance, -last),
+        dy: -last,
+    }
+}
+
+/// How far the disc reaches in a row.
+fn reach_in(clearance: u8, dy: i16) -> i16 {
+    let reach = REACH.get(usize::from(clearance));
+    let reach = reach.and_then(|reach| reach.get(usize::from(dy.unsigned_abs())));
+    i16::from(reach.copied().unwrap_or(0))
+}
+
+/// The next cell of a disc.
+struct BodyCells {
+    clearance: u8,
+    centre: Cell,
+    dx: i16,
+    dy: i16,
+}
+
+impl Iterator for BodyCells {
+    type Item = Cell;
+
+    #[inline(never)] // small rather than fast: most robots have one cell
+    fn next(&mut self) -> Option<Cell> {
+        if self.dy > i16::from(self.clearance) {
+            return None;
+        }
+        let cell = moved(self.centre, self.dx, self.dy);
+        self.dx += 1;
+        if self.dx > reach_in(self.clearance, self.dy) {
+            self.dy += 1;
+            self.dx = -reach_in(self.clearance, self.dy);
+        }
+        Some(cell)
+    }
 }
 
 const fn moved(cell: Cell, dx: i16, dy: i16) -> Cell {
@@ -121,20 +155,23 @@ pub(super) fn tile<const TW: usize, const TH: usize>(
     if map.free(at) == 0 {
         return Layers::default();
     }
-    let [layers, ..] = strip::<1, TW, TH>(map, clearance, (at.x.into(), at.y.into()));
+    let [layers, ..] = strip(map, clearance, (at.x.into(), at.y.into()));
     layers
 }
 
-/// The layers of `N` tiles side by side, at most 4, from the one in this column and row on.
+/// Tiles of a strip.
+const LENGTH: usize = 4;
+
+/// The layers of four tiles side by side, from the one in this column and row on.
 #[inline(never)] // a frame of half a kilobyte
-pub(super) fn strip<const N: usize, const TW: usize, const TH: usize>(
+pub(super) fn strip<const TW: usize, const TH: usize>(
     map: &Map<TW, TH>,
     clearance: u8,
     (x, y): (i16, i16),
-) -> [Layers; N] {
+) -> [Layers; LENGTH] {
     // Bit 8 of a row is the first column of the first tile.
     let (mut free, mut walls) = ([0u64; ROWS], [0u64; ROWS]);
-    for (dx, column) in (-1..=N as i16).zip((0u32..).step_by(TILE)) {
+    for (dx, column) in (-1..=LENGTH as i16).zip((0u32..).step_by(TILE)) {
         for (dy, skipped) in [(-1, 4), (0, 0), (1, 0)] {
             let tile = tile_at(map, x + dx, y + dy);
             // The rows above begin in the middle of their tiles.
@@ -160,7 +197,7 @@ pub(super) fn strip<const N: usize, const TW: usize, const TH: usize>(
     for (doubtful, taken) in doubtful.iter_mut().zip(&taken) {
         *doubtful = taken & !*doubtful;
     }
-    let mut layers = [Layers::default(); N];
+    let mut layers = [Layers::default(); LENGTH];
     let beside = doubtful.windows(3).zip(taken.iter().skip(1)).zip(0u32..);
     for ((rows, taken), y) in beside {
         let [above, row, below] = rows else { continue };

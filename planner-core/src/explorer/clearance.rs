@@ -3,26 +3,27 @@
 
 use super::Explorer;
 use super::body::{Fit, bodies_touch, body_cells, fit, strip};
-use super::surroundings::Surroundings;
+use super::surroundings::{Layer, Surroundings};
 use super::window::{Rows, Window};
 use crate::cell::{Cell, Direction};
 use crate::map::{Learnt, Level, Tile};
 use crate::tile::{TILE, TileIndex, bits, every_tile};
 
 impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
-    /// The open cells, the goals and the frontier of a window; with a clearance.
-    #[inline(never)] // its rows leave the stack before a flood
-    pub(super) fn body_window(&self, window: Window) -> [Rows; 3] {
-        let mut rows = [[0; TILE * 4]; 3];
-        let [open, goals, frontiers] = &mut rows;
+    /// A layer of a window; with a clearance.
+    #[inline(never)] // the strips leave the stack before a flood
+    pub(super) fn body_window(&self, window: Window, layer: Layer) -> Rows {
+        let mut rows = [0; TILE * 4];
         for (at, tiles) in window.rows_of_tiles() {
-            let strip = strip::<4, TW, TH>(&self.map, self.clearance, at);
+            let strip = strip(&self.map, self.clearance, at);
             for (layers, at) in strip.into_iter().zip(tiles) {
                 let Some(at) = at else { continue };
-                let frontier = self.with_due(at, layers);
-                window.put(open, at, self.open_of(at, layers.clear, || layers.frontier));
-                window.put(goals, at, frontier & !self.aside.cells(at));
-                window.put(frontiers, at, frontier);
+                let cells = match layer {
+                    Layer::Open => self.open_of(at, layers.clear, || layers.frontier),
+                    Layer::Frontier => self.with_due(at, layers),
+                    Layer::Goals => self.with_due(at, layers) & !self.aside.cells(at),
+                };
+                window.put(&mut rows, at, cells);
             }
         }
         rows

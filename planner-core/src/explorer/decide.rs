@@ -37,6 +37,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     /// Decides among the frontiers nearby, and which far search is to run if none of
     /// them is this robot's own. A robot without a plan then gets the best one of others.
+    #[inline(never)] // its frame is gone before the far search
     pub(super) fn decide_near(&mut self) -> Near {
         let (now, id) = (self.around.now, self.id);
         self.role.since = 0;
@@ -48,14 +49,15 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         };
         let wants_any = self.role.plan.is_none();
         let (near, work) = (&mut self.near, &mut self.work);
-        let best = near.load(&self.around, work).map(|bonus| {
+        let bonus = near.load(&self.around, work);
+        let best = bonus.as_ref().map(|bonus| {
             let others = self.others.exploring();
             let others = others.flat_map(|other| {
                 let is_lower = other.id < id;
                 other.whereabouts().map(move |cell| (cell, is_lower))
             });
             let own = self.around.position;
-            near.best(own, &aim, &bonus, others, wants_any, work)
+            near.best(own, &aim, bonus, others, wants_any, work)
         });
         if let Some(best) = &best {
             let mine = near.mine(best, work);

@@ -16,7 +16,7 @@ use super::body::WINDOW_WORK;
 use super::near::Candidate;
 use super::others::Others;
 use super::patch::connected;
-use super::surroundings::Surroundings;
+use super::surroundings::{Layer, Surroundings};
 use super::wave::{Event, LABELS, Labels, STEP_WORK, Wave};
 use crate::cell::{Cell, Direction};
 use crate::robot::RobotId;
@@ -344,7 +344,7 @@ impl<const TW: usize, const TH: usize> FarSearch<TW, TH> {
         if around.clearance > 0 {
             *work += WINDOW_WORK;
         }
-        for (at, cells) in connected(goal, |window| around.frontier_window(window)) {
+        for (at, cells) in connected(goal, |window| around.window(window, Layer::Frontier)) {
             self.wave.take(at, cells);
         }
         // With every frontier spoken for, nobody else is served in this pass.

@@ -9,6 +9,17 @@ use crate::cell::{Cell, Direction};
 use crate::map::{MOST_PLACES, Map};
 use crate::tile::TileIndex;
 
+/// What can be asked of all cells of a window.
+#[derive(Clone, Copy)]
+pub(crate) enum Layer {
+    /// Cells that this robot can enter.
+    Open,
+    /// The frontier, and cells that are due a visit.
+    Frontier,
+    /// Those of them that are worth a look of this robot.
+    Goals,
+}
+
 /// The robot's knowledge of the place, apart from the other robots.
 pub(crate) struct Surroundings<const TW: usize, const TH: usize> {
     pub(crate) map: Map<TW, TH>,
@@ -94,36 +105,15 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
         frontier | self.due(at) & self.map.free(at)
     }
 
-    /// The open cells of a window.
-    pub(crate) fn open_window(&self, window: Window) -> Rows {
-        match self.clearance {
-            0 => window.load(|at| self.open(at)),
-            _ => {
-                let [open, ..] = self.body_window(window);
-                open
-            }
+    /// A layer of a window.
+    pub(crate) fn window(&self, window: Window, layer: Layer) -> Rows {
+        if self.clearance > 0 {
+            return self.body_window(window, layer);
         }
-    }
-
-    /// The frontier cells of a window, and those that are due a visit.
-    pub(crate) fn frontier_window(&self, window: Window) -> Rows {
-        match self.clearance {
-            0 => window.load(|at| self.frontier(at)),
-            _ => {
-                let [.., frontier] = self.body_window(window);
-                frontier
-            }
-        }
-    }
-
-    /// The goals of a window; with them its open cells where they cost nothing more.
-    pub(crate) fn goals_window(&self, window: Window) -> (Rows, Option<Rows>) {
-        match self.clearance {
-            0 => (window.load(|at| self.goals(at)), None),
-            _ => {
-                let [open, goals, _] = self.body_window(window);
-                (goals, Some(open))
-            }
+        match layer {
+            Layer::Open => window.load(|at| self.open(at)),
+            Layer::Frontier => window.load(|at| self.frontier(at)),
+            Layer::Goals => window.load(|at| self.goals(at)),
         }
     }
 

@@ -111,6 +111,8 @@ enum Pause {
     Enough,
     /// The queue is empty.
     Empty,
+    /// A layer of an exact wave ends.
+    Layer,
     /// A goal was reached.
     Goal(usize),
     /// The map was not read there, or a wave that gave up had reached the cell.
@@ -379,7 +381,10 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
     ) -> Event {
         while *work < until {
             let cells = (until - *work).div_ceil(VISIT_WORK);
-            let (pause, left) = self.run_through(labels, cells);
+            let (pause, left) = match self.is_exact {
+                true => self.run_exact(cells),
+                false => self.run_through(labels, cells),
+            };
             *work += (cells - left) * VISIT_WORK;
             match pause {
                 Pause::Enough => {}
@@ -395,11 +400,17 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 }
                 Pause::Empty => {
                     *work += SOME_WORK;
-                    let has_found = match self.is_exact {
-                        true => self.find_lost_of_layer(),
-                        false => self.find_lost(labels),
-                    };
-                    if !has_found {
+                    if !self.find_lost(labels) {
+                        return Event::End;
+                    }
+                }
+                Pause::Layer if self.searched < self.end => {
+                    *work += SOME_WORK;
+                    self.find_lost_of_layer();
+                }
+                Pause::Layer => {
+                    *work += VISIT_WORK;
+                    if !self.begin_layer() {
                         return Event::End;
                     }
                 }
@@ -416,7 +427,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         let end = (self.end as usize).min(bytes.len());
         let bytes = bytes.get_mut(..end).unwrap_or_default();
         let stride = self.stride as usize;
-        let is_exact = self.is_exact;
         let (mut queue, mut layer_end) = (self.queue, self.layer_end);
         let (mut from, mut is_under_way) = (self.from as usize, self.is_under_way);
         let mut notes = Notes {
@@ -430,16 +440,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                     break Pause::Enough;
                 }
                 if queue.first == layer_end {
-                    if is_exact {
-                        if self.searched < self.end {
-                            break Pause::Empty;
-                        }
-                        // What was lost belongs to the layer that begins.
-                        if core::mem::take(&mut notes.has_lost) | self.has_lost {
-                            self.has_lost = false;
-                            self.searched = 0;
-                        }
-                    }
                     self.layer += 1;
                     layer_end = queue.end;
                 }
@@ -456,7 +456,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 is_under_way = false;
                 continue;
             }
-            let mark = if is_exact { (label + 1) % RING } else { label };
             macro_rules! step {
                 ($own:literal) => {
                     Step::<$own> {
@@ -464,13 +463,13 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                         places: &mut places,
                         queue: &mut queue,
                         notes: &mut notes,
-                        mark: cell::REACHED | mark,
+                        mark: cell::REACHED | label,
                         given_up: labels.given_up,
                     }
                     .enter_all(from, stride)
                 };
             }
-            let pause = if is_exact || label == labels.own {
+            let pause = if label == labels.own {
                 step!(true)
             } else {
                 step!(false)
@@ -486,6 +485,49 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         self.is_under_way = is_under_way;
         self.has_lost |= notes.has_lost;
         self.has_met |= notes.has_met;
+        (pause, left)
+    }
+
+    /// As [`run_through`](Self::run_through) for an exact wave, up to the end of a layer.
+    #[inline(never)]
+    fn run_exact(&mut self, cells: u32) -> (Pause, u32) {
+        let mut places = Self::places(&mut self.places, self.end);
+        let bytes = self.cells.as_flattened_mut().as_flattened_mut();
+        let end = (self.end as usize).min(bytes.len());
+        let mut notes = Notes {
+            has_lost: false,
+            has_met: false,
+        };
+        let mut wave = Step::<true> {
+            bytes: bytes.get_mut(..end).unwrap_or_default(),
+            places: &mut places,
+            queue: &mut self.queue,
+            notes: &mut notes,
+            mark: cell::REACHED | (self.layer % u32::from(RING)) as u8,
+            given_up: 0,
+        };
+        let mut left = cells;
+        let pause = loop {
+            if !self.is_under_way {
+                if left == 0 {
+                    break Pause::Enough;
+                }
+                if wave.queue.first == self.layer_end {
+                    break Pause::Layer;
+                }
+                let Some(first) = wave.queue.pop(wave.places) else {
+                    break Pause::Layer;
+                };
+                left -= 1;
+                self.from = first as u32;
+            }
+            let pause = wave.enter_all(self.from as usize, self.stride as usize);
+            self.is_under_way = pause.is_some();
+            if let Some(pause) = pause {
+                break pause;
+            }
+        };
+        self.has_lost |= notes.has_lost;
         (pause, left)
     }
 
@@ -550,12 +592,23 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         true
     }
 
+    /// The next layer of an exact wave begins; what was lost belongs to it. False if there
+    /// is nothing in it.
+    fn begin_layer(&mut self) -> bool {
+        let has_lost = core::mem::take(&mut self.has_lost);
+        if has_lost {
+            self.searched = 0;
+        }
+        self.layer += 1;
+        self.layer_end = self.queue.end;
+        has_lost || self.queue.first != self.queue.end
+    }
+
     /// As [`find_lost`](Self::find_lost) for an exact wave: the next cell of this layer,
     /// all of which stood in the queue or were lost, has its neighbours looked at, once
-    /// more at worst. False if none was lost.
+    /// more at worst.
     #[cold]
-    fn find_lost_of_layer(&mut self) -> bool {
-        let is_searching = self.searched < self.end;
+    fn find_lost_of_layer(&mut self) {
         let layer = ((self.layer + 2) % u32::from(RING)) as u8;
         for number in (self.searched..self.end).take(SOME) {
             self.searched = number + 1;
@@ -566,7 +619,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
                 break;
             }
         }
-        is_searching
     }
 
     /// Steps that the waves have made at most: the distance of what they reach next.

@@ -7,6 +7,7 @@
 //! it is no longer for it.
 
 use super::Explorer;
+use super::surroundings::Layer;
 use super::window::{Rows, Window};
 use crate::cell::{Cell, Direction};
 use crate::role::{Path, Plan};
@@ -30,7 +31,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let here = self.around.position;
         let window = Window::around(here);
         let from = window.place(here)?;
-        let open = self.around.open_window(window);
+        let open = self.around.window(window, Layer::Open);
         let mut farthest = None;
         for (cell, steps) in cells_of(here, self.role.plan.as_ref()).take(LONGEST as usize) {
             match window.place(cell) {

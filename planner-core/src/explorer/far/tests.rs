@@ -149,7 +149,9 @@ fn matched<const TW: usize, const TH: usize>(scene: &Scene) -> Option<(Cell, u32
                         return Some((cell, distance));
                     }
                     robots.remove(served);
-                    for (at, cells) in connected(cell, |window| around.frontier_window(window)) {
+                    for (at, cells) in
+                        connected(cell, |window| around.window(window, Layer::Frontier))
+                    {
                         taken.extend(crate::tile::bits(cells).map(|bit| at.cell(bit)));
                     }
                 }

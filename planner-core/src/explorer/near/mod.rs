@@ -6,7 +6,7 @@ mod bonus;
 use super::body::WINDOW_WORK;
 use super::lean;
 use super::others::MAX_OTHERS;
-use super::surroundings::Surroundings;
+use super::surroundings::{Layer, Surroundings};
 use super::window::{SIDE, Window};
 use crate::cell::{Cell, Direction};
 use crate::robot::RobotId;
@@ -155,6 +155,7 @@ impl NearSearch {
     }
 
     /// Looks at the map around the robot. `None` if no frontier is in the window.
+    #[inline(never)] // its rows leave the stack before a flood
     pub(crate) fn load<const TW: usize, const TH: usize>(
         &mut self,
         around: &Surroundings<TW, TH>,
@@ -162,15 +163,15 @@ impl NearSearch {
     ) -> Option<Bonus> {
         self.window = Window::around(around.position);
         *work += GOALS_WORK;
-        let (frontier, open) = around.goals_window(self.window);
-        if open.is_some() {
-            *work += WINDOW_WORK;
+        if around.clearance > 0 {
+            *work += 2 * WINDOW_WORK;
         }
+        let frontier = around.window(self.window, Layer::Goals);
         if frontier.iter().all(|&row| row == 0) {
             return None;
         }
         *work += LOAD_WORK;
-        let open = open.unwrap_or_else(|| around.open_window(self.window));
+        let open = around.window(self.window, Layer::Open);
         for ((row, theirs), (frontier, open)) in self
             .rows
             .iter_mut()
@@ -201,6 +202,7 @@ impl NearSearch {
     /// a step a layer; those of the others run together, those with higher ids a layer
     /// late: the robot's are the cells that it reaches before them. All its ways there
     /// lead over cells of its own.
+    #[inline(never)] // its rows leave the stack before the way
     pub(crate) fn best(
         &mut self,
         own: Cell,

@@ -18,10 +18,11 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
             let strip = strip(&self.map, self.clearance, at);
             for (layers, at) in strip.into_iter().zip(tiles) {
                 let Some(at) = at else { continue };
+                let [_, open, frontier, goals] = self.layers_of(at, layers);
                 let cells = match layer {
-                    Layer::Open => self.open_of(at, layers.clear, || layers.frontier),
-                    Layer::Frontier => self.with_due(at, layers),
-                    Layer::Goals => self.with_due(at, layers) & !self.aside.cells(at),
+                    Layer::Open => open,
+                    Layer::Frontier => frontier,
+                    Layer::Goals => goals,
                 };
                 window.put(&mut rows, at, cells);
             }

@@ -38,7 +38,12 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
     /// What waves read of a tile: the cells that others can enter, those that this robot can,
     /// the frontier, and the goals of this robot. Work: five tiles, or with a clearance nine.
     pub(crate) fn layers(&self, at: TileIndex) -> [u64; 4] {
-        let layers = self.clear(at);
+        self.layers_of(at, self.clear(at))
+    }
+
+    /// As [`layers`](Self::layers), of what is clear and what is frontier.
+    #[inline(never)] // small rather than fast: it stands behind every window
+    pub(super) fn layers_of(&self, at: TileIndex, layers: Layers) -> [u64; 4] {
         let frontier = self.with_due(at, layers);
         let open = self.open_of(at, layers.clear, || layers.frontier);
         [
@@ -64,7 +69,7 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
     /// The clear cells of a tile that did not refuse this robot, and the one that it stands
     /// on.
     #[inline]
-    pub(super) fn open_of(&self, at: TileIndex, clear: u64, frontier: impl FnOnce() -> u64) -> u64 {
+    fn open_of(&self, at: TileIndex, clear: u64, frontier: impl FnOnce() -> u64) -> u64 {
         let closed = self
             .aside
             .closed(at, || self.map.tile(at).visited() & frontier());
@@ -89,7 +94,7 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
     /// The frontier cells of a tile, and those that are due a visit. Work: five tiles, and
     /// 32 cells where there are visits.
     #[inline] // mostly there are no visits
-    pub(super) fn with_due(&self, at: TileIndex, layers: Layers) -> u64 {
+    fn with_due(&self, at: TileIndex, layers: Layers) -> u64 {
         if self.visits.is_empty() {
             return layers.frontier;
         }
@@ -121,14 +126,16 @@ impl<const TW: usize, const TH: usize> Surroundings<TW, TH> {
     /// or where the body is beside it.
     #[inline(never)]
     fn due(&self, at: TileIndex) -> u64 {
-        let sides = self
-            .visits
-            .iter()
-            .flat_map(|cell| Direction::ALL.map(|side| self.beside(*cell, side)));
-        sides
-            .filter_map(TileIndex::of)
-            .filter(|(tile, _)| *tile == at)
-            .fold(0, |cells, (_, bit)| cells | bit)
+        let mut due = 0;
+        for cell in &self.visits {
+            for side in Direction::ALL {
+                match TileIndex::of(self.beside(*cell, side)) {
+                    Some((tile, bit)) if tile == at => due |= bit,
+                    _ => {}
+                }
+            }
+        }
+        due
     }
 
     /// The nearest cell on a side that the body does not reach.

@@ -386,7 +386,7 @@ PlannerBearing planner_bearing(float radians);
 // looks, and if nothing else is left the robot stops with `PLANNER_STOP_UNSEEN`. The
 // cell that the robot stands on is free, whatever was seen of it from elsewhere.
 //
-// Stack: 4736 bytes.
+// Stack: 4224 bytes.
 PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerPose *pose,
                                    float max_range,
@@ -398,7 +398,7 @@ PlannerResult planner_observe_scan(Planner *planner,
 // which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 // says what looks must show.
 //
-// Stack: 3840 bytes.
+// Stack: 3328 bytes.
 PlannerResult planner_observe_cells(Planner *planner,
                                     PlannerCell centre,
                                     const PlannerSeen *cells,
@@ -406,7 +406,7 @@ PlannerResult planner_observe_cells(Planner *planner,
 
 // Decides what the robot does now. Call it once a tick.
 //
-// Stack: 4352 bytes.
+// Stack: 3328 bytes.
 PlannerResult planner_tick(Planner *planner, PlannerAction *action);
 
 // Goes on after a stop with the map at hand: somebody opened a door, carried the robot,
@@ -518,7 +518,7 @@ PlannerResult planner_status(Planner *planner, PlannerStatus *status);
 // places on the line, on the way or beside the way keep the plan. Work: 16 tiles, and 64
 // lines of at most 20 rows each.
 //
-// Stack: 2560 bytes.
+// Stack: 2048 bytes.
 PlannerResult planner_waypoint(Planner *planner, bool *has_waypoint, PlannerCell *waypoint);
 
 // Writes the cells of the way, from the next one on: at most `room` of at most 256, up to

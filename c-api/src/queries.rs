@@ -97,7 +97,7 @@ pub extern "C" fn planner_status(
 /// places on the line, on the way or beside the way keep the plan. Work: 16 tiles, and 64
 /// lines of at most 20 rows each.
 ///
-/// Stack: 2560 bytes.
+/// Stack: 2048 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_waypoint(
     planner: *mut Planner,

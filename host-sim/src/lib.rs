@@ -26,6 +26,7 @@ pub mod fleet;
 pub mod live;
 pub mod measured;
 pub mod medium;
+mod mission;
 pub mod planners;
 pub mod record;
 pub mod robot;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::baselines::{
     Bmilrv, Closest, Greedy, Marks, PaperMinPos, Peer, Rule, StrongMinPos, Utility,
 };
-use crate::scenario::Mission;
+use crate::mission::Mission;
 
 /// Names a planner, on the command line and in traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, ValueEnum, Serialize, Deserialize)]

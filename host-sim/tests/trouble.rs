@@ -15,7 +15,9 @@ use proptest::prelude::*;
 
 fn scenario(trouble: Trouble) -> Scenario {
     let world = Arc::new(generate(Family::Rooms, 31, 24, 7).unwrap());
-    let starts = world.place(6, &Starts::Random(7), false).unwrap();
+    // Where there are three, each is soon out of the others' sight.
+    let robots = if trouble.see_robots { 6 } else { 3 };
+    let starts = world.place(robots, &Starts::Random(7), false).unwrap();
     let mut scenario = Scenario::new(world, starts, PlannerKind::Explorer);
     scenario.conditions.trouble = trouble;
     scenario
@@ -148,9 +150,11 @@ fn troubles() -> Vec<Trouble> {
 
 #[test]
 fn a_world_misleads_in_the_same_way_again_and_in_its_trace() {
-    let (_, calm) = run(&scenario(Trouble::default()));
     for trouble in troubles() {
         let scenario = scenario(trouble);
+        let mut calm = scenario.clone();
+        calm.conditions.trouble = Trouble::default();
+        let (_, calm) = run(&calm);
         let (outcome, trace) = run(&scenario);
         assert!(trace.records != calm.records, "{trouble}");
         let (again, trace_again) = run(&scenario);

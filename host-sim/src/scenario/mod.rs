@@ -8,18 +8,17 @@ mod faults;
 pub mod grid;
 pub mod heights;
 mod key;
-mod mission;
 mod trouble;
 pub mod voxels;
 
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use serde::{Deserialize, Serialize};
 
+pub use crate::mission::{Mission, MissionArgs};
 pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
-pub use mission::{Mission, MissionArgs};
 pub use trouble::{ErrorKind, Preset, Trouble, TroubleArgs};
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.

@@ -15,12 +15,12 @@ pub struct Mission {
 }
 
 impl Mission {
-    pub(super) fn is_none(&self) -> bool {
+    pub(crate) fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
     /// What is set, as names and values of options.
-    pub(super) fn settings(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn settings(&self) -> Vec<(&'static str, String)> {
         let come_home = self.come_home.then(|| ("come-home", String::new()));
         let energy = (self.energy > 0).then(|| ("energy", self.energy.to_string()));
         come_home.into_iter().chain(energy).collect()
@@ -41,7 +41,7 @@ pub struct MissionArgs {
 }
 
 impl MissionArgs {
-    pub(super) fn over(self, mission: Mission) -> Mission {
+    pub(crate) fn over(self, mission: Mission) -> Mission {
         Mission {
             come_home: self.come_home || mission.come_home,
             energy: self.energy.unwrap_or(mission.energy),

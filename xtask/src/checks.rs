@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 
 use crate::shell::{Command, cargo, command, root};
 use crate::{
-    c_interface, c_library, crazyflie, documents, firmware, fuzz, host, install, lab, output,
+    c_interface, c_library, crazyflie, documents, firmware, fuzz, host, install, lab, output, ros,
     slurm, worst,
 };
 
@@ -21,7 +21,7 @@ pub(crate) struct Check {
 
 /// Checks that keep one core busy, with target folders and toolchains of their own: they
 /// run beside the others.
-const ASIDE: [&str; 2] = ["miri", "fuzz"];
+const ASIDE: [&str; 3] = ["miri", "fuzz", "ros"];
 
 const CHECKS: &[Check] = &[
     Check {
@@ -37,7 +37,7 @@ const CHECKS: &[Check] = &[
                 "clippy",
                 "--workspace",
                 "--all-targets",
-                "--features=host-sim/parquet",
+                "--features=host-sim/parquet,host-sim/mcap",
                 "--locked",
                 "--",
                 "-Dwarnings",
@@ -93,7 +93,7 @@ const CHECKS: &[Check] = &[
                 "doc",
                 "--workspace",
                 "--no-deps",
-                "--features=host-sim/parquet",
+                "--features=host-sim/parquet,host-sim/mcap",
             ])
             .env("RUSTDOCFLAGS", "-Dwarnings")
             .run()
@@ -159,6 +159,11 @@ const CHECKS: &[Check] = &[
         name: "commands",
         title: "the commands in the documents exist",
         run: documents::check,
+    },
+    Check {
+        name: "mcap",
+        title: "the field's reader opens the recording of an exploration",
+        run: ros::recording_is_read,
     },
     Check {
         name: "slurm",
@@ -254,6 +259,11 @@ const CHECKS: &[Check] = &[
         name: "fuzz",
         title: "each fuzz target for a short while",
         run: || fuzz::run(20),
+    },
+    Check {
+        name: "ros",
+        title: "three robots of another simulator explore an office with the ROS 2 node",
+        run: ros::explores,
     },
 ];
 

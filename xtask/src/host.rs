@@ -16,7 +16,7 @@ const WAY: [&str; 5] = [
     "--workspace",
     "--exclude=xtask-tools",
     "--no-default-features",
-    "--features=host-sim/parquet",
+    "--features=host-sim/parquet,host-sim/mcap",
     "--locked",
 ];
 

@@ -3,10 +3,12 @@
 //! Each function returns at once when the thing is there. Where it may not be
 //! installed from here, the error is the command to run.
 
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 use anyhow::{Context, Result, bail};
 
+use crate::host;
 use crate::shell::{Command, command};
 
 /// The toolchain that Miri and the sanitizers come with.
@@ -167,6 +169,56 @@ pub(crate) fn slurm() -> Result<()> {
 pub(crate) fn chromium() -> Result<()> {
     package("chromium", "chromium")?;
     package("chromedriver", "chromium-driver")
+}
+
+/// The tool that sets up a network.
+pub(crate) fn ip() -> Result<()> {
+    // It says its version when it is asked otherwise than most.
+    match command("ip").arg("-V").output() {
+        Ok(output) if output.success() => Ok(()),
+        _ => install("ip", "iproute2"),
+    }
+}
+
+/// A Python with what checks need of it, in a folder of its own; returns its interpreter.
+pub(crate) fn python() -> Result<PathBuf> {
+    /// A DDS that is not the node's, a simulator that is not ours, a reader of recordings.
+    const PACKAGES: [&str; 4] = [
+        "cyclonedds==11.0.1",
+        "ir-sim==2.12.0",
+        "mcap==1.6.0",
+        "mcap-ros2-support==0.6.0",
+    ];
+
+    static ONE: Mutex<()> = Mutex::new(());
+    let _one = ONE.lock();
+    let folder = host::built().join("python");
+    let interpreter = folder.join("bin/python");
+    let (list, wanted) = (folder.join("packages"), PACKAGES.join("\n"));
+    // Written last: a folder without it is half made.
+    if std::fs::read_to_string(&list).is_ok_and(|has| has == wanted) {
+        return Ok(interpreter);
+    }
+    // Debian has it in a package of its own.
+    let can = command("python3").args(["-c", "import ensurepip, venv"]);
+    if !can.output().is_ok_and(|it| it.success()) {
+        install("python3 -m venv", "python3-venv")?;
+    }
+    or_say(
+        "Making a folder for Python's packages",
+        command("python3")
+            .args(["-m", "venv", "--clear"])
+            .arg(&folder),
+    )?;
+    or_say(
+        "Installing what a check needs of Python",
+        command(&interpreter)
+            .args(["-m", "pip", "install", "--quiet"])
+            .args(["--disable-pip-version-check", "--only-binary=:all:"])
+            .args(PACKAGES),
+    )?;
+    std::fs::write(&list, wanted).with_context(|| format!("cannot write {}", list.display()))?;
+    Ok(interpreter)
 }
 
 /// A program, from the system's package manager.

@@ -40,6 +40,7 @@ mod install;
 mod lab;
 mod lines;
 mod output;
+mod ros;
 mod shell;
 mod slurm;
 mod tools;

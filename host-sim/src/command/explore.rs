@@ -23,7 +23,7 @@ use planner_core::Cell;
 
 use super::output::OutputArgs;
 use super::report;
-use super::{Done, tell_notes};
+use super::{Done, left_out, tell_notes};
 
 /// Seed of all chance unless said otherwise.
 const SEED: u64 = 1;
@@ -69,6 +69,10 @@ pub(crate) struct Explore {
     /// `replay-scans`. Cells are 0.25 m wide if the map does not say it.
     #[arg(long, value_name = "FILE")]
     scans: Option<PathBuf>,
+    /// Also write a recording (MCAP) of ROS 2 messages, which Foxglove and other viewers
+    /// open: maps, poses, goals and scans. Compile with `--features mcap`.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -121,6 +125,9 @@ impl Explore {
         self,
         run: impl FnOnce(&Scenario, Options<'_>) -> Result<Ran, Box<dyn Error>>,
     ) -> Done {
+        if self.mcap.is_some() && !cfg!(feature = "mcap") {
+            return Err(left_out("--mcap", "mcap").into());
+        }
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
         tell_notes(&self.map, &world);
         let scenario = self.scenario(world)?;
@@ -154,6 +161,11 @@ impl Explore {
             let mut log = Vec::new();
             Laser::default().log(&trace).write(&mut log)?;
             files::write(scans, &log).map_err(|error| format!("{}: {error}", scans.display()))?;
+        }
+        #[cfg(feature = "mcap")]
+        if let Some(path) = &self.mcap {
+            let bytes = draw::recording(&trace, std::io::Cursor::new(Vec::new()))?.into_inner();
+            files::write(path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
         }
         folder.close()?;
 

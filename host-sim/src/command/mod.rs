@@ -34,5 +34,15 @@ fn tell_notes(path: &Path, world: &host_sim::world::World) {
     }
 }
 
+/// The error for an option that another build of the program has.
+fn left_out(option: &str, feature: &str) -> String {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    format!(
+        "{option} was left out of this program; run `cargo run --release --features {feature} \
+         -- {}`",
+        arguments.join(" ")
+    )
+}
+
 /// The exit status, or what is wrong with the input.
 type Done = Result<ExitCode, Box<dyn Error>>;

@@ -13,6 +13,8 @@ mod oblique;
 mod paint;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
+#[cfg(all(feature = "mcap", not(target_arch = "wasm32")))]
+mod recording;
 mod replay;
 #[cfg(not(target_arch = "wasm32"))]
 mod scans;
@@ -30,6 +32,8 @@ pub use coverage::Coverage;
 pub use oblique::{oblique_view, oblique_voxels};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
+#[cfg(all(feature = "mcap", not(target_arch = "wasm32")))]
+pub use recording::recording;
 pub use replay::Replay;
 #[cfg(not(target_arch = "wasm32"))]
 pub use scans::scans;

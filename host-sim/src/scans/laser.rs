@@ -77,7 +77,8 @@ impl Laser {
         }
     }
 
-    fn look(&self, world: &World, at: Cell, heading: f64, dice: &mut Dice) -> Look {
+    /// What it measures from the middle of a cell.
+    pub(crate) fn look(&self, world: &World, at: Cell, heading: f64, dice: &mut Dice) -> Look {
         let size = world.metres_per_cell().unwrap_or(self.cell_size);
         let from = (f64::from(at.x) + 0.5, f64::from(at.y) + 0.5);
         let readings = (0..self.beams).map(|beam| {

@@ -16,8 +16,8 @@ use host_sim::planners::PlannerKind;
 use host_sim::scenario::TroubleArgs;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::Done;
 use super::folder::Folder;
+use super::{Done, left_out};
 use settings::SettingsArgs;
 
 /// What a merge takes from the plan, or has no use for, besides [`SettingsArgs`].
@@ -88,13 +88,7 @@ struct Results {
 impl Compare {
     pub(crate) fn run(self) -> Done {
         if self.parquet && !cfg!(feature = "parquet") {
-            let arguments: Vec<String> = std::env::args().skip(1).collect();
-            return Err(format!(
-                "--parquet was left out of this program; run `cargo run --release --features \
-                 parquet -- {}`",
-                arguments.join(" ")
-            )
-            .into());
+            return Err(left_out("--parquet", "parquet").into());
         }
         if let Some(first) = self.merge.first() {
             let out = self.out.as_ref().unwrap_or(first);

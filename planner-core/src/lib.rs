@@ -38,8 +38,8 @@ pub mod voxel_survey;
 mod zeroed;
 
 pub use cell::{Cell, Direction, Extent, ExtentError};
-pub use map::{Learnt, Map};
-pub use planner::{AnyPlanner, Contact, Errands, Inspect, Planner};
+pub use map::{CellSet, Learnt, Map};
+pub use planner::{AnyPlanner, Contact, Errands, Inspect, KeepOutError, Planner};
 pub use point::Point;
 pub use robot::{Action, Activity, Motion, Reason, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;

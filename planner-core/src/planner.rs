@@ -1,7 +1,9 @@
 //! The verbs that every planner has.
 
+use core::fmt;
+
 use crate::cell::Cell;
-use crate::map::{Learnt, Map};
+use crate::map::{CellSet, Learnt, Map};
 use crate::radio::{Frame, FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::role::Role;
@@ -279,7 +281,57 @@ pub trait Errands<const TW: usize, const TH: usize>: Planner<TW, TH> {
         let _ = left;
         false
     }
+
+    /// From now on the robot enters none of these cells, nor touches one with its body, and
+    /// need not see them; they replace those of before, and `None` lifts the ban. Each robot
+    /// of a fleet may have others.
+    ///
+    /// "Complete" then means: whatever can be reached without them is known, except for these
+    /// cells themselves. On the robot's map they are walls, as what lies beyond its edge, and
+    /// nothing else is kept of them; they are never told to others. Looks go across them,
+    /// so frontiers may be seen behind them that no way leads to: the robot then stops as
+    /// [`OutOfReach`](crate::Stop::OutOfReach). Sent into them, it stops as
+    /// [`NoWay`](crate::Stop::NoWay). Carried into them it stays, and waits for a
+    /// [pose](Wait::Pose) elsewhere.
+    ///
+    /// A robot that had stopped goes on. Work: as of [`Planner::resume`], and every tile with
+    /// its neighbours.
+    ///
+    /// # Errors
+    /// The robot or its home lies in them, or the planner cannot; nothing has changed then.
+    fn keep_out(&mut self, cells: Option<&'static CellSet<TW, TH>>) -> Result<(), KeepOutError> {
+        let _ = cells;
+        Err(KeepOutError::Unable)
+    }
 }
+
+/// Why a robot cannot keep out of cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum KeepOutError {
+    /// This planner keeps out of nothing.
+    Unable,
+    /// The robot is here, and it or its body lies in them.
+    Robot(Cell),
+    /// Its home is here, and lies in them, or its body does when it is there.
+    Home(Cell),
+}
+
+impl fmt::Display for KeepOutError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unable => write!(f, "this planner keeps out of no cells"),
+            Self::Robot(at) => write!(
+                f,
+                "the robot is at {at}, in cells that it is to keep out of"
+            ),
+            Self::Home(at) => write!(f, "its home is at {at}, in cells that it is to keep out of"),
+        }
+    }
+}
+
+impl core::error::Error for KeepOutError {}
 
 /// All of them, for whoever hosts planners of several kinds.
 pub trait AnyPlanner<const TW: usize, const TH: usize>:

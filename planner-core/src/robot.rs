@@ -300,7 +300,8 @@ impl Reason {
 pub enum Wait {
     /// It has seen nothing yet.
     Sight,
-    /// Its pose lies off the grid: nothing is decided until a pose lies on it again.
+    /// Its pose lies off the grid, or on a cell that it
+    /// [keeps out of](crate::Errands::keep_out): nothing is decided until one lies elsewhere.
     Pose,
     /// It searches the map.
     Search,

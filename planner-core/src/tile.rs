@@ -60,6 +60,9 @@ impl TileIndex {
     pub(crate) const fn inside(self, extent: Extent) -> u64 {
         let columns = (extent.width as usize).saturating_sub(self.x as usize * TILE);
         let rows = (extent.height as usize).saturating_sub(self.y as usize * TILE);
+        if columns >= TILE && rows >= TILE {
+            return u64::MAX;
+        }
         let row: u64 = if columns >= TILE {
             0xff
         } else {
@@ -178,6 +181,11 @@ impl<T: Copy, const TW: usize, const TH: usize> Tiles<T, TW, TH> {
     /// The same for all.
     pub(crate) const fn all(value: T) -> Self {
         Self([[value; TW]; TH])
+    }
+
+    /// Row by row.
+    pub(crate) const fn of(values: [[T; TW]; TH]) -> Self {
+        Self(values)
     }
 
     /// The same for all again, in place.

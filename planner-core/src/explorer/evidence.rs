@@ -250,6 +250,9 @@ impl Evidence {
         let mut disputed = 0;
         for at in sighting.tiles() {
             let (free, mut blocked) = sighting.tile(at);
+            let minded = !map.kept_out(at);
+            let free = free & minded;
+            blocked &= minded;
             if blocked != 0 {
                 blocked &= !hidden(at);
             }

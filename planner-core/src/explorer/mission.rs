@@ -19,11 +19,12 @@
 
 use super::Explorer;
 use super::aside::Verdict;
+use super::body::body_cells;
 use super::far::Outcome;
 use super::near::Candidate;
 use crate::cell::Cell;
-use crate::map::Learnt;
-use crate::planner::Errands;
+use crate::map::{CellSet, Learnt};
+use crate::planner::{Errands, KeepOutError};
 use crate::robot::{Action, Stop, Wait};
 use crate::role::{End, Errand, Plan};
 use crate::zeroed::Maybe;
@@ -314,6 +315,24 @@ impl<const TW: usize, const TH: usize> Errands<TW, TH> for Explorer<TW, TH> {
     fn energy(&mut self, left: u32) -> bool {
         self.budget.energy = Maybe::Just(left);
         true
+    }
+
+    fn keep_out(&mut self, cells: Option<&'static CellSet<TW, TH>>) -> Result<(), KeepOutError> {
+        if let Some(cells) = cells {
+            let clearance = self.around.clearance;
+            let reaches = |from| body_cells(clearance, from).any(|cell| cells.contains(cell));
+            if reaches(self.around.position) {
+                return Err(KeepOutError::Robot(self.around.position));
+            }
+            if reaches(self.role.home) {
+                return Err(KeepOutError::Home(self.role.home));
+            }
+        }
+        self.around.map.keep_out(cells);
+        self.role.kept_out = cells.map_or(0, CellSet::digest);
+        self.go_on();
+        self.budget.doubt();
+        Ok(())
     }
 }
 

@@ -99,6 +99,10 @@
 //! ends too: an errand is begun by the user or when the robot is done, once for each thing
 //! learnt.
 //!
+//! # Cells that it keeps out of
+//! The map has walls there, as beyond its edge, whatever looks and others say: all of this
+//! holds as in a place with walls there.
+//!
 //! # Why its reason is true
 //! The robot's last wave covered every cell that free cells connect with it. If nothing was
 //! set aside, it met no frontier, so these cells are closed off by cells that were decided
@@ -299,7 +303,7 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     far_is_doubtful: bool,
     /// Whether the last tick asked for the first step of the plan.
     stepping: bool,
-    /// Whether the last pose lay off the grid.
+    /// Whether the last pose lay off the grid, or where the robot keeps out.
     is_astray: bool,
     /// Looks from where the body stands that were asked for, whatever its role.
     looks: u8,
@@ -526,7 +530,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
     fn observe(&mut self, sighting: &Sighting) -> Learnt {
         let centre = sighting.centre();
-        self.is_astray = !self.around.map.extent().contains(centre);
+        let map = &self.around.map;
+        self.is_astray = !map.extent().contains(centre) || map.keeps_out(centre);
         if self.is_astray {
             return Learnt::default();
         }

@@ -5,7 +5,9 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
+use crate::tile::every_tile;
 
+mod limits;
 pub(super) mod scene;
 mod senses;
 
@@ -15,12 +17,20 @@ type Small = Explorer<3, 3>;
 
 /// Every robot stops; what its sensor could show it from where it could go, it knows; and
 /// its reason says no more than is so.
-fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
+fn assert_truthful(scene: &Scene) -> Result<Ended, TestCaseError> {
     let ended = run(scene, 100_000);
     // Without trouble there is no reason to give up. Bodies that see little and may not
     // pass each other can be in each other's way for good.
     let is_crowd_in_the_dark = scene.solid && scene.trouble.view > 0;
-    let is_troubled = scene.trouble.is_any() || is_crowd_in_the_dark;
+    // So can those that keep out of different cells.
+    let kept_out = |robot: &Small| -> Vec<u64> {
+        every_tile(3, 3)
+            .map(|at| robot.map().kept_out(at))
+            .collect()
+    };
+    let mut pairs = ended.robots.windows(2);
+    let is_divided = scene.solid && pairs.any(|of| kept_out(&of[0]) != kept_out(&of[1]));
+    let is_troubled = scene.trouble.is_any() || is_crowd_in_the_dark || is_divided;
     for ((robot, stop), &start) in ended.robots.iter().zip(&ended.stops).zip(&scene.start) {
         let stop = stop.ok_or_else(|| {
             TestCaseError::fail(std::format!(
@@ -39,22 +49,26 @@ fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
             robot.map()
         );
         // Exchanges of roles join the maps: everybody knows what its body can reach.
-        let all = scene.reachable(start, |_| true);
+        let keeps_out = |cell| robot.map().keeps_out(cell);
+        let here = robot.around.position;
+        let all = scene.reachable(here, |cell| !keeps_out(cell));
         if stop.is_complete() {
             prop_assert_eq!(all.iter().find(|cell| is_missing(cell)), None, "{}", told);
         }
         // What no look shows, nobody enters; what refuses, neither.
-        let passes = |cell| !scene.is_silent(cell) && scene.refuses(cell).is_none();
+        let passes =
+            |cell| !scene.is_silent(cell) && scene.refuses(cell).is_none() && !keeps_out(cell);
         // Robots that may not share a cell and have given up are in each other's way.
         let is_crowded = scene.solid && !stop.is_complete();
         let free = if is_crowded {
             Vec::new()
         } else {
-            scene.reachable(start, passes)
+            scene.reachable(here, passes)
         };
         for cell in free {
             for seen in Direction::ALL.map(|direction| cell.step(direction)) {
-                let shows = scene.extent.contains(seen) && !scene.is_silent(seen);
+                let shows =
+                    scene.extent.contains(seen) && !scene.is_silent(seen) && !keeps_out(seen);
                 prop_assert!(
                     !shows || !is_missing(&seen),
                     "{} is unknown to {}",
@@ -101,7 +115,7 @@ fn assert_truthful(scene: &Scene) -> Result<(), TestCaseError> {
             prop_assert_eq!(stop.left(), robot.map().frontiers(), "{}", told);
         }
     }
-    Ok(())
+    Ok(ended)
 }
 
 /// As many small worlds as `PROPTEST_CASES` says, or these.

@@ -3,13 +3,15 @@
 //!
 //! A *frontier* cell is known, free, and has an unknown 4-neighbour
 //! \[Yamauchi1997\]. Cells beyond the extent count as known obstacles, so the map
-//! has no special edge.
+//! has no special edge; so do cells that the robot keeps out of.
 
+mod cell_set;
 mod shut;
 mod tile;
 
 use core::fmt;
 
+pub use cell_set::CellSet;
 pub use shut::{MOST_PLACES, Shut};
 pub use tile::{Level, Tile};
 
@@ -54,7 +56,7 @@ impl core::ops::AddAssign for Learnt {
 /// are at most 64.
 ///
 /// Memory: 24 bytes a tile for the layers, 1 for its frontier count, 8 bytes a row of
-/// tiles, and 76.
+/// tiles, and 84.
 #[derive(Clone)]
 pub struct Map<const TW: usize, const TH: usize> {
     extent: Extent,
@@ -64,6 +66,7 @@ pub struct Map<const TW: usize, const TH: usize> {
     unknown: u32,
     /// Free cells on the edge of the extent.
     edge: u32,
+    kept_out: Option<&'static CellSet<TW, TH>>,
     shut: Shut,
     changed: TileSet<TH>,
 }
@@ -107,6 +110,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
             frontiers: 0,
             unknown: 0,
             edge: 0,
+            kept_out: None,
             shut: Shut::new(),
             changed: TileSet::new(),
         }
@@ -133,6 +137,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.frontiers = 0;
         self.unknown = extent.cells();
         self.edge = 0;
+        self.kept_out = None;
         self.shut = Shut::new();
         self.changed.clear();
         for (at, tile) in every_tile(TW, TH).zip(self.tiles.values_mut()) {
@@ -168,12 +173,13 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.frontiers
     }
 
-    /// Number of cells of the extent that are not known. Never grows.
+    /// Number of cells of the extent that are not known, nor kept out of. Never grows, unless
+    /// the robot is told to keep out of others.
     pub const fn unknown_cells(&self) -> u32 {
         self.unknown
     }
 
-    /// Number of known cells of the extent.
+    /// Number of known cells of the extent, and of those that the robot keeps out of.
     pub const fn known_cells(&self) -> u32 {
         self.extent.cells() - self.unknown
     }
@@ -199,9 +205,56 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.tiles.get(at).map_or(0, |tile| tile.free())
     }
 
-    /// One tile without the cells beyond the extent, as robots tell each other.
+    /// One tile without the cells beyond the extent and those that the robot keeps out of, as
+    /// robots tell each other.
     pub fn tile_inside(&self, at: TileIndex) -> Tile {
-        self.tile(at).only(at.inside(self.extent))
+        self.tile(at).only(self.inside(at))
+    }
+
+    /// The cells of a tile that the map tells of.
+    #[inline]
+    fn inside(&self, at: TileIndex) -> u64 {
+        at.inside(self.extent) & !self.kept_out(at)
+    }
+
+    /// The cells of a tile that the robot keeps out of, see
+    /// [`keep_out`](crate::Errands::keep_out).
+    #[inline]
+    pub fn kept_out(&self, at: TileIndex) -> u64 {
+        self.kept_out.map_or(0, |cells| cells.word(at))
+    }
+
+    /// Whether the robot keeps out of the cell.
+    pub fn keeps_out(&self, cell: Cell) -> bool {
+        self.kept_out.is_some_and(|cells| cells.contains(cell))
+    }
+
+    /// From now on the robot keeps out of these cells, and forgets what it knows of them and
+    /// of those that it kept out of before. Work: every tile, with its neighbours.
+    pub(crate) fn keep_out(&mut self, cells: Option<&'static CellSet<TW, TH>>) {
+        let before = core::mem::replace(&mut self.kept_out, cells);
+        for at in every_tile(TW, TH) {
+            let forgotten = before.map_or(0, |cells| cells.word(at));
+            let kept_out = self.kept_out(at) & at.inside(self.extent);
+            if let Some(tile) = self.tiles.get_mut(at) {
+                let inside = forgotten & at.inside(self.extent);
+                *tile = tile
+                    .with(inside, Level::Unknown)
+                    .with(kept_out, Level::Wall);
+            }
+        }
+        self.count_all();
+    }
+
+    /// Counts what is kept counted as cells become known.
+    fn count_all(&mut self) {
+        (self.unknown, self.edge) = (0, 0);
+        for at in every_tile(TW, TH) {
+            let tile = self.tile(at);
+            self.unknown += (!tile.known()).count_ones();
+            self.edge += (tile.free() & at.edge(self.extent)).count_ones();
+            self.recount(at);
+        }
     }
 
     fn bit(&self, cell: Cell, layer: impl Fn(Tile) -> u64) -> bool {
@@ -305,7 +358,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     /// Joins another robot's tile into this map; ignored outside. Work: the tile
     /// and its four neighbours.
     pub fn join_tile(&mut self, at: TileIndex, other: Tile) -> Learnt {
-        let inside = at.inside(self.extent);
+        let inside = self.inside(at);
         let Some(tile) = self.tiles.get_mut(at) else {
             return Learnt::default();
         };
@@ -325,8 +378,10 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         if learnt.cells | learnt.closed | learnt.opened > 0 {
             self.unknown -= learnt.cells;
             let edge = at.edge(self.extent);
-            self.edge += (after.free() & edge).count_ones();
-            self.edge -= (before.free() & edge).count_ones();
+            if edge != 0 {
+                self.edge += (after.free() & edge).count_ones();
+                self.edge -= (before.free() & edge).count_ones();
+            }
             for bit in bits(after.obstacle() & before.free()) {
                 self.shut.add(at.cell(bit));
             }
@@ -361,8 +416,8 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
     pub fn join(&mut self, other: &Self) -> Learnt {
         let mut learnt = Learnt::default();
         if self.extent == other.extent {
-            for (at, tile) in every_tile(TW, TH).zip(other.tiles.values()) {
-                learnt += self.join_tile(at, *tile);
+            for at in every_tile(TW, TH) {
+                learnt += self.join_tile(at, other.tile_inside(at));
             }
         }
         learnt
@@ -373,7 +428,7 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         let mut learnt = Learnt::default();
         if self.extent == other.extent {
             for at in tiles.iter() {
-                learnt += self.join_tile(at, other.tile(at));
+                learnt += self.join_tile(at, other.tile_inside(at));
             }
         }
         learnt

@@ -68,6 +68,8 @@ pub struct Role {
     pub(crate) errand: Maybe<Errand>,
     /// How often an exchange took it from where its errand had led.
     pub(crate) returns: u8,
+    /// Names the cells that its body keeps out of; 0: none.
+    pub(crate) kept_out: u16,
 }
 
 impl Role {
@@ -77,6 +79,7 @@ impl Role {
             home,
             errand: Maybe::Nothing,
             returns: 0,
+            kept_out: 0,
             plan: None,
             since: 0,
             changes: 0,
@@ -151,11 +154,14 @@ impl Role {
 /// 3. The other is passive, or gives way: exchange; it gets its cell put in front
 ///    of its path, unless that is used up and the rest is being searched for.
 /// 4. Else wait: no new plan, nothing is used up. So too if `mine` has lost four plans,
-///    since it last learnt anything, to bodies that had set aside what they led to.
+///    since it last learnt anything, to bodies that had set aside what they led to; and
+///    where the two bodies keep out of different cells: what is done for one is not for the
+///    other.
 ///
 /// The bodies then join each other's maps, and neither role acts again in this tick.
 pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
-    if theirs.has_arrived || mine.lost >= MOST_LOST {
+    let is_elsewhere = mine.kept_out != theirs.kept_out;
+    if theirs.has_arrived || mine.lost >= MOST_LOST || is_elsewhere {
         return None;
     }
     let (mut mine, mut theirs) = (*mine, *theirs);
@@ -218,5 +224,7 @@ mod tests {
         assert!(exchange(&role(1, 3), HERE, &mine, THERE).is_none());
         mine.stopped = Maybe::Just(Stop::Complete);
         assert!(exchange(&role(1, 3), HERE, &mine, THERE).is_some());
+        mine.kept_out = 1;
+        assert_eq!(exchange(&role(1, 3), HERE, &mine, THERE), None);
     }
 }

@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use super::*;
 use crate::cell::Extent;
 use crate::explorer::Config;
-use crate::planner::{Contact, Planner};
+use crate::explorer::tests::scene::kept;
+use crate::planner::{Contact, Errands, Planner};
 use crate::robot::{Action, Motion, RobotId, Stop, Wait};
 use crate::sight::look;
 use crate::tile::TileSet;
@@ -20,6 +21,7 @@ struct Place {
     extent: Extent,
     walls: Vec<Cell>,
     starts: Vec<Cell>,
+    kept_out: Vec<Cell>,
     clearance: u8,
     radius: u8,
     slice: u32,
@@ -31,7 +33,8 @@ impl Place {
     }
 
     fn has_room(&self, cell: Cell) -> bool {
-        !body_cells(self.clearance, cell).any(|cell| self.is_blocked(cell))
+        let is_shut = |cell| self.is_blocked(cell) || self.kept_out.contains(&cell);
+        !body_cells(self.clearance, cell).any(is_shut)
     }
 
     /// Where a body can get to from a cell.
@@ -57,11 +60,14 @@ fn place() -> impl Strategy<Value = Place> {
         let most = usize::from(width) * usize::from(height) / 12;
         let walls = prop::collection::vec(cell(), 0..=most);
         let starts = prop::collection::vec(cell(), 1..=3);
-        (walls, starts).prop_map(move |(walls, wished)| {
+        let kept_out = prop_oneof![Just(0), 0..=most];
+        let kept_out = kept_out.prop_flat_map(move |most| prop::collection::vec(cell(), 0..=most));
+        (walls, starts, kept_out).prop_map(move |(walls, wished, kept_out)| {
             let mut place = Place {
                 extent: Extent::new(width, height),
                 walls,
                 starts: Vec::new(),
+                kept_out,
                 clearance,
                 radius: clearance + 2 + more,
                 slice: slice.max(400),
@@ -73,6 +79,7 @@ fn place() -> impl Strategy<Value = Place> {
                 let is_apart = |other: &Cell| !bodies_touch(clearance, start, *other);
                 if is_inside && place.starts.iter().all(is_apart) {
                     place.walls.retain(|cell| !room.contains(cell));
+                    place.kept_out.retain(|cell| !room.contains(cell));
                     place.starts.push(start);
                 }
             }
@@ -91,6 +98,9 @@ fn run(place: &Place) -> Result<(Vec<Small>, Vec<Stop>), TestCaseError> {
     let mut at = place.starts.clone();
     let new = |(&start, id)| Small::new(config, RobotId(id), place.extent, start).unwrap();
     let mut robots: Vec<_> = at.iter().zip(0u8..).map(new).collect();
+    for robot in &mut robots {
+        robot.keep_out(Some(kept(&place.kept_out))).unwrap();
+    }
     let all = TileSet::full();
     for _ in 0..60_000 {
         for (robot, &at) in robots.iter_mut().zip(&at) {
@@ -113,7 +123,7 @@ fn run(place: &Place) -> Result<(Vec<Small>, Vec<Stop>), TestCaseError> {
             match robots[i].tick() {
                 Action::Move(step) => {
                     let to = at[i].step(step);
-                    prop_assert!(place.has_room(to), "{} touches a wall at {}", i, to);
+                    prop_assert!(place.has_room(to), "{} touches something at {}", i, to);
                     let touched =
                         (0..at.len()).find(|&j| j != i && bodies_touch(place.clearance, to, at[j]));
                     prop_assert_eq!(touched, None, "{} at {}", i, to);
@@ -173,6 +183,7 @@ fn what_is_too_narrow_is_seen_and_counted() {
         extent,
         walls: cells.filter(|cell| is_wall(cell.x, cell.y)).collect(),
         starts: std::vec![Cell::new(4, 4)],
+        kept_out: Vec::new(),
         clearance: 1,
         radius: 9,
         slice: 240_000,

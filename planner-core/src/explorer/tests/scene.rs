@@ -1,13 +1,16 @@
 //! A small world with robots in it, drawn at random, and what becomes of them.
 
+use std::boxed::Box;
 use std::collections::HashMap;
+use std::sync::Mutex;
 use std::vec;
 use std::vec::Vec;
 
 use proptest::prelude::*;
 
 use super::*;
-use crate::planner::Errands;
+use crate::map::CellSet;
+use crate::planner::{Errands, KeepOutError};
 use crate::role::exchange;
 use crate::sight::look;
 
@@ -27,6 +30,19 @@ pub(in crate::explorer) struct Scene {
     pub(in crate::explorer) seed: u64,
     /// Steps that each robot's energy lasts for, and ticks after which it is told again.
     pub(in crate::explorer) energy: Option<(u32, u32)>,
+    /// What each robot keeps out of, none or as many as robots, and from which tick on.
+    pub(in crate::explorer) kept_out: Vec<Vec<Cell>>,
+    pub(in crate::explorer) kept_from: u32,
+}
+
+/// Cells for as long as the tests run, remembered so that none are lost.
+pub(in crate::explorer) fn kept(cells: &[Cell]) -> &'static CellSet<3, 3> {
+    static ALL: Mutex<Vec<&'static CellSet<3, 3>>> = Mutex::new(Vec::new());
+    let mut set = CellSet::new();
+    cells.iter().for_each(|cell| set.insert(*cell));
+    let set = Box::leak(Box::new(set));
+    ALL.lock().unwrap().push(set);
+    set
 }
 
 /// What a robot cannot rely on.
@@ -339,6 +355,8 @@ pub(in crate::explorer) fn scene(is_troubled: bool) -> impl Strategy<Value = Sce
                             trouble,
                             seed,
                             energy: None,
+                            kept_out: Vec::new(),
+                            kept_from: 0,
                         }
                     },
                 )
@@ -407,7 +425,21 @@ pub(in crate::explorer) fn run(scene: &Scene, limit: u32) -> Ended {
     let mut steps = vec![0; robots.len()];
     let mut looks = HashMap::new();
     let mut ticks = 0;
-    while stops.iter().any(Option::is_none) && ticks < limit {
+    while stops.iter().any(Option::is_none) && ticks < limit || ticks <= scene.kept_from {
+        if ticks == scene.kept_from {
+            for (robot, cells) in robots.iter_mut().zip(&scene.kept_out) {
+                let (here, home) = (robot.around.position, robot.role.home);
+                let result = robot.keep_out(Some(kept(cells)));
+                assert_eq!(
+                    result,
+                    match () {
+                        () if cells.contains(&here) => Err(KeepOutError::Robot(here)),
+                        () if cells.contains(&home) => Err(KeepOutError::Home(home)),
+                        () => Ok(()),
+                    }
+                );
+            }
+        }
         if let Some((energy, period)) = scene.energy {
             for (robot, steps) in robots.iter_mut().zip(&steps) {
                 if ticks % period == 0 {
@@ -472,6 +504,8 @@ pub(in crate::explorer) fn run(scene: &Scene, limit: u32) -> Ended {
                         continue;
                     }
                     assert!(!scene.is_blocked(next), "a step into an obstacle at {next}");
+                    let keeps_out = robots[i].map().keeps_out(next);
+                    assert!(!keeps_out, "a step to where it keeps out, {next}");
                     assert!(robots[i].work() <= scene.config.work_bound());
                     let holder = at.iter().position(|&cell| cell == next);
                     match holder {

@@ -185,12 +185,6 @@ enum Poses {
     Transforms(Vec<In<TFMessage>>),
 }
 
-/// What is seen.
-enum Sight {
-    Scans(In<LaserScan>),
-    Maps(In<OccupancyGrid>),
-}
-
 enum Wheels {
     Twist(Out<Twist>),
     Stamped(Out<TwistStamped>),
@@ -202,7 +196,8 @@ struct Explore<'a> {
     robot: Robot,
     frames: Frames,
     poses: Poses,
-    sight: Sight,
+    scans: Option<In<LaserScan>>,
+    costmaps: Option<In<OccupancyGrid>>,
     wheels: Wheels,
     heard: In<UInt8MultiArray>,
     told: Out<UInt8MultiArray>,
@@ -272,9 +267,13 @@ impl<'a> Explore<'a> {
                 ports.subscribe(&p.tf_static_topic, latched(100))?,
             ]),
         };
-        let sight = match p.costmap_topic.as_str() {
-            "" => Sight::Scans(ports.subscribe(&p.scan_topic, best_effort(5))?),
-            topic => Sight::Maps(ports.subscribe(topic, reliable(1))?),
+        let scans = match p.needs_scans() {
+            true => Some(ports.subscribe(&p.scan_topic, best_effort(5))?),
+            false => None,
+        };
+        let costmaps = match p.costmap_topic.as_str() {
+            "" => None,
+            topic => Some(ports.subscribe(topic, reliable(1))?),
         };
         let wheels = match p.drive {
             Drive::Twist => Wheels::Twist(ports.publish(&p.cmd_vel_topic, reliable(1))?),
@@ -290,7 +289,8 @@ impl<'a> Explore<'a> {
         };
         let explore = Self {
             poses,
-            sight,
+            scans,
+            costmaps,
             wheels,
             heard: ports.subscribe(&p.frames_topic, best_effort(64))?,
             told: ports.publish(&p.frames_topic, best_effort(64))?,
@@ -357,18 +357,16 @@ impl<'a> Explore<'a> {
                 }
             }
         }
-        match &self.sight {
-            Sight::Scans(scans) => {
-                while let Some(scan) = self.ports.take(scans, time)? {
-                    let (scanner, base) = (&scan.header.frame_id, &self.robot.parameters);
-                    let offset = self.frames.find(scanner, &base.robot_base_frame);
-                    self.robot.scan(scan, offset.unwrap_or_default(), now);
-                }
+        if let Some(scans) = &self.scans {
+            while let Some(scan) = self.ports.take(scans, time)? {
+                let (scanner, base) = (&scan.header.frame_id, &self.robot.parameters);
+                let offset = self.frames.find(scanner, &base.robot_base_frame);
+                self.robot.scan(scan, offset.unwrap_or_default(), now);
             }
-            Sight::Maps(maps) => {
-                while let Some(map) = self.ports.take(maps, time)? {
-                    self.robot.costmap(map, now);
-                }
+        }
+        if let Some(costmaps) = &self.costmaps {
+            while let Some(map) = self.ports.take(costmaps, time)? {
+                self.robot.costmap(map);
             }
         }
         while let Some(frame) = self.ports.take(&self.heard, time)? {

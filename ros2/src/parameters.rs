@@ -268,6 +268,12 @@ impl Parameters {
         Ok(())
     }
 
+    /// Whether the node has to see for itself: where no other's map shows the place, and what
+    /// is ahead of its wheels.
+    pub(crate) fn needs_scans(&self) -> bool {
+        self.costmap_topic.is_empty() || self.drive != Drive::Nav2
+    }
+
     fn tolerance(&self) -> f32 {
         (self.scan_error / self.resolution) as f32
     }

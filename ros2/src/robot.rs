@@ -45,8 +45,8 @@ pub(crate) struct Robot {
     scans: VecDeque<(LaserScan, Pose)>,
     costmap: Option<OccupancyGrid>,
     room: f64,
-    /// When something was last seen, in seconds.
-    seen_at: Option<f64>,
+    /// When the last scan came, in seconds.
+    scanned_at: Option<f64>,
     progress: Progress,
     is_paused: bool,
     /// How many frontiers were left, all too small, when it stopped for that.
@@ -69,7 +69,7 @@ impl Robot {
             scans: VecDeque::new(),
             costmap: None,
             room: f64::INFINITY,
-            seen_at: None,
+            scanned_at: None,
             progress: Progress::default(),
             is_paused: false,
             small: None,
@@ -83,16 +83,18 @@ impl Robot {
     /// A scan, from a scanner at `offset` on the robot, that came at `now` seconds.
     pub(crate) fn scan(&mut self, scan: LaserScan, offset: Pose, now: f64) {
         self.room = room_ahead(&scan, offset, self.parameters.robot_radius);
-        self.seen_at = Some(now);
+        self.scanned_at = Some(now);
+        if !self.parameters.costmap_topic.is_empty() {
+            return;
+        }
         if self.scans.len() == SCANS {
             self.scans.pop_front();
         }
         self.scans.push_back((scan, offset));
     }
 
-    /// A map of somebody else's, that came at `now` seconds.
-    pub(crate) fn costmap(&mut self, map: OccupancyGrid, now: f64) {
-        self.seen_at = Some(now);
+    /// A map of somebody else's.
+    pub(crate) fn costmap(&mut self, map: OccupancyGrid) {
         self.costmap = Some(map);
     }
 
@@ -213,12 +215,14 @@ impl Robot {
         }
         match self.explorer.waiting() {
             _ if self.is_paused => "paused".to_owned(),
+            _ if self.lacks_map() => {
+                format!("waiting for a map on {}", self.parameters.costmap_topic)
+            }
             _ if self.is_blind(now) => {
-                let topic = match self.parameters.costmap_topic.as_str() {
-                    "" => &self.parameters.scan_topic,
-                    costmap => costmap,
-                };
-                format!("waiting for {topic}: nothing came lately")
+                format!(
+                    "waiting for {}: no scan came lately",
+                    self.parameters.scan_topic
+                )
             }
             Some(Wait::Pose) => "waiting: the pose lies off the map".to_owned(),
             Some(Wait::Obstructed) => "waiting: something is in the way".to_owned(),
@@ -248,14 +252,15 @@ impl Robot {
         self.explorer.way()
     }
 
-    /// Whether the sensor is silent.
+    /// Whether what it has to see by is silent.
     fn is_blind(&self, now: f64) -> bool {
-        // A map changes seldom; what stands ahead is then another's to see.
-        let is_scanner = self.parameters.costmap_topic.is_empty();
-        match self.seen_at {
-            Some(then) => is_scanner && now - then > self.parameters.sensor_timeout,
-            None => true,
-        }
+        let is_old = |then: f64| now - then > self.parameters.sensor_timeout;
+        self.lacks_map() || self.parameters.needs_scans() && self.scanned_at.is_none_or(is_old)
+    }
+
+    /// Whether another's map is still to come; it may then change as seldom as it likes.
+    fn lacks_map(&self) -> bool {
+        self.costmap.is_none() && !self.parameters.costmap_topic.is_empty()
     }
 
     fn timeout(&self) -> f64 {

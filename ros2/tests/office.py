@@ -42,7 +42,7 @@ STEP = 0.1
 RADIUS = 0.2
 STARTS = [(2.25, 5.0, 0.0), (8.0, 4.75, 1.57), (14.0, 5.25, 3.14)]
 KILLED = 2
-KILLED_AFTER = 15.0
+KILLED_AFTER = 10.0
 LIMIT = 120.0
 # How far the scanner of some robots is turned.
 LEFT = 0.5
@@ -84,8 +84,8 @@ def world():
     robot = {
         "kinematics": {"name": "diff", "noise": True, "alpha": [0.03, 0, 0, 0.03, 0, 0]},
         "shape": {"name": "circle", "radius": RADIUS},
-        "vel_max": [1.0, 2.0],
-        "vel_min": [-1.0, -2.0],
+        "vel_max": [1.2, 2.5],
+        "vel_min": [-1.2, -2.5],
         "behavior": None,
         "sensors": [
             {
@@ -154,16 +154,54 @@ class Odometry:
 
 
 class Nav2(Odometry):
-    """Poses as odometry, goals to Nav2."""
+    """As explore_lite has it: a map to see by, drawn of the scans, and goals to Nav2."""
 
-    parameters = {"pose_source": "odom", "drive": "nav2", "service_mapping": "cyclone"}
+    parameters = {
+        "pose_source": "odom",
+        "costmap_topic": "map",
+        "drive": "nav2",
+        "service_mapping": "cyclone",
+    }
+    # Metres of a cell of the map, and by how much walls are drawn behind what was hit.
+    FINE, BEHIND = 0.125, 0.04
 
     def __init__(self, robot):
         super().__init__(robot)
         self.navigator = Navigator(robot.participant, robot.space)
         self.pose, self.room = None, math.inf
+        self.map = robot.writer("map", m.OccupancyGrid, LATCHED)
+        rows, columns = (round(it * LETTER / self.FINE) for it in plan().shape)
+        self.votes = np.zeros((rows, columns), dtype=int)
+        self.scans = 0
+
+    def draw(self, angles, ranges):
+        """Draws a scan into the map, and shows it twice a second."""
+        x, y, yaw = self.pose
+        angles = angles + yaw
+
+        def vote(along, beams, votes):
+            columns = ((x + along * np.cos(angles[beams])) / self.FINE).astype(int)
+            rows = ((y + along * np.sin(angles[beams])) / self.FINE).astype(int)
+            inside = (rows >= 0) & (columns >= 0)
+            inside &= (rows < self.votes.shape[0]) & (columns < self.votes.shape[1])
+            self.votes[rows[inside], columns[inside]] += votes
+
+        for along in np.arange(0.0, 4.0, self.FINE / 2):
+            vote(along, ranges > along + self.BEHIND, -1)
+        hits = np.isfinite(ranges)
+        vote(ranges[hits] + self.BEHIND, hits, 3)
+        self.votes.clip(-20, 20, out=self.votes)
+        self.scans += 1
+        if self.scans % 5 == 1:
+            height, width = self.votes.shape
+            drawn = np.where(self.votes == 0, -1, np.where(self.votes > 0, 100, 0))
+            info = m.MapMetaData(m.Time(), self.FINE, width, height, m.Pose())
+            header, cells = m.Header(m.Time(), "map"), drawn.ravel().tolist()
+            self.map.write(m.OccupancyGrid(header, info, cells))
 
     def see(self, angles, ranges):
+        if self.pose:
+            self.draw(angles, ranges)
         angles, ranges = angles[np.isfinite(ranges)], ranges[np.isfinite(ranges)]
         x, y = ranges * np.cos(angles), ranges * np.sin(angles)
         ahead = x[(x > 0) & (np.abs(y) < RADIUS + 0.1)]
@@ -245,8 +283,8 @@ class Robot:
             "origin_y": -MARGIN,
             "robot_radius": RADIUS + 0.05,
             "scan_error": 0.06,
-            "max_speed": 0.8,
-            "max_turn": 1.5,
+            "max_speed": 1.0,
+            "max_turn": 2.0,
             "progress_timeout": 5.0,
             "mcap": self.recording,
             "width": int((of.shape[1] * LETTER + 2 * MARGIN) / CELL),
@@ -294,13 +332,13 @@ class Robot:
                 ranges,
             )
         )
-        angles = np.linspace(scan["angle_min"], scan["angle_max"], len(ranges))
-        self.body.see(angles, np.array(ranges))
         x, y, yaw = (float(it) for it in state.flatten()[:3])
         self.way += math.dist(self.at, (x, y)) if self.at else 0.0
         self.at = x, y
         x, y, yaw = random.gauss(x, 0.005), random.gauss(y, 0.005), random.gauss(yaw, 0.003)
         self.body.tell(x, y, yaw, stamp)
+        angles = np.linspace(scan["angle_min"], scan["angle_max"], len(ranges))
+        self.body.see(angles, np.array(ranges))
 
     def ask(self, now):
         """What its node wants its wheels to do; nothing when it is silent."""

@@ -39,7 +39,9 @@ mod zeroed;
 
 pub use cell::{Cell, Direction, Extent, ExtentError};
 pub use map::{CellSet, Learnt, Map};
-pub use planner::{AnyPlanner, Contact, Errands, Inspect, KeepOutError, Planner};
+pub use planner::{
+    AnyPlanner, Contact, Errands, Inspect, KeepOutError, Persist, Planner, RestoreError,
+};
 pub use point::Point;
 pub use robot::{Action, Activity, Motion, Reason, RobotId, Status, Stop, Wait};
 pub use sight::Sighting;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::cell::Cell;
+use crate::cell::{Cell, Extent};
 use crate::map::{CellSet, Learnt, Map};
 use crate::radio::{Frame, FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
@@ -333,13 +333,103 @@ impl fmt::Display for KeepOutError {
 
 impl core::error::Error for KeepOutError {}
 
+/// A planner's state as bytes and back: after a brown-out, or for the next sortie. By
+/// default a planner has none.
+pub trait Persist<const TW: usize, const TH: usize>: Planner<TW, TH> {
+    /// Length of a save in bytes; for 64×64 cells 1,604.
+    fn saved_bytes(&self) -> usize {
+        0
+    }
+
+    /// Writes the bytes of a save from number `first` on into `page`, as many as there are
+    /// room for or left, and returns how many: so it goes to flash a page at a time. Between
+    /// the pages nothing may change, or the save is refused later as damaged. Work: the whole
+    /// save, about 100 instructions a byte.
+    ///
+    /// ```
+    /// use planner_core::explorer::{Config, Explorer};
+    /// use planner_core::{Cell, Extent, Persist, RobotId};
+    ///
+    /// let new = || Explorer::<8, 8>::new(Config::new(), RobotId(1), Extent::new(64, 64), Cell::new(5, 5));
+    /// let robot = new()?;
+    /// let (mut flash, mut page) = (Vec::new(), [0; 256]);
+    /// loop {
+    ///     let written = robot.save(flash.len(), &mut page);
+    ///     if written == 0 {
+    ///         break;
+    ///     }
+    ///     flash.extend(&page[..written]);
+    /// }
+    /// new()?.restore(&flash)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn save(&self, first: usize, page: &mut [u8]) -> usize {
+        let _ = (first, page);
+        0
+    }
+
+    /// Goes on from a save; what lies behind its last byte does not matter. The planner was
+    /// set up as the one that was saved: with the same grid and id, and with a configuration
+    /// that may be another. It keeps out of what it does, and has the configuration's energy
+    /// until it is told. Home is the one that was saved; an errand, and having stopped, are
+    /// forgotten.
+    ///
+    /// The numbers of its frames go on 32 later, so that others take them for new where as
+    /// many were sent since the save.
+    ///
+    /// # Errors
+    /// What is wrong with the save; nothing has changed then.
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), RestoreError> {
+        let _ = bytes;
+        Err(RestoreError::Unable)
+    }
+}
+
+/// Why a save was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum RestoreError {
+    /// This planner restores nothing.
+    Unable,
+    /// It does not begin as a save does: nothing was saved there.
+    NoSave,
+    /// It has this version, which this library does not read.
+    Version(u8),
+    /// It is cut short, or some of its bytes are others.
+    Damaged,
+    /// It is of a grid of this size, or of one with another origin or cells of another size.
+    Grid(Extent),
+    /// It is of the robot with this id.
+    Robot(RobotId),
+}
+
+impl fmt::Display for RestoreError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unable => write!(f, "this planner restores nothing"),
+            Self::NoSave => write!(f, "no save"),
+            Self::Version(version) => write!(f, "a save of version {version}, not 1"),
+            Self::Damaged => write!(f, "a save that is damaged or cut short"),
+            Self::Grid(extent) => write!(
+                f,
+                "a save of another grid: of {extent} cells, or with another origin or cells of \
+                 another size"
+            ),
+            Self::Robot(id) => write!(f, "a save of robot {}", id.0),
+        }
+    }
+}
+
+impl core::error::Error for RestoreError {}
+
 /// All of them, for whoever hosts planners of several kinds.
 pub trait AnyPlanner<const TW: usize, const TH: usize>:
-    Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH>
+    Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH>
 {
 }
 
 impl<P, const TW: usize, const TH: usize> AnyPlanner<TW, TH> for P where
-    P: Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH>
+    P: Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH>
 {
 }

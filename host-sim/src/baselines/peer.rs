@@ -3,8 +3,8 @@
 use planner_core::ExtentError;
 use planner_core::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::{
-    Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, Map, Motion, Planner,
-    RobotId, Sighting, Status, Stop, TileSet,
+    Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, Map, Motion, Persist,
+    Planner, RobotId, Sighting, Status, Stop, TileSet,
 };
 
 use super::waves::{Spot, Waves};
@@ -304,6 +304,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Peer<TW, TH> {
 }
 
 impl<const TW: usize, const TH: usize> Errands<TW, TH> for Peer<TW, TH> {}
+
+impl<const TW: usize, const TH: usize> Persist<TW, TH> for Peer<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Peer<TW, TH> {
     fn work(&self) -> u32 {

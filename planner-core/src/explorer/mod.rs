@@ -142,6 +142,7 @@ mod others;
 mod patch;
 mod purse;
 mod queue;
+mod saving;
 mod stopping;
 mod surroundings;
 mod wave;

@@ -229,6 +229,24 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.kept_out.is_some_and(|cells| cells.contains(cell))
     }
 
+    /// The cells that the robot keeps out of, if it does.
+    pub(crate) const fn kept_out_cells(&self) -> Option<&'static CellSet<TW, TH>> {
+        self.kept_out
+    }
+
+    /// Takes what is known from a save: the tiles of the extent, row by row. What is counted
+    /// is not counted before [`keep_out`](Self::keep_out).
+    pub(crate) fn load(&mut self, tiles: impl Iterator<Item = Tile>, shut: Shut) {
+        let (columns, rows) = self.tile_extent();
+        for (at, saved) in every_tile(columns.into(), rows.into()).zip(tiles) {
+            let inside = at.inside(self.extent);
+            if let Some(tile) = self.tiles.get_mut(at) {
+                *tile = saved.only(inside).with(!inside, Level::Wall);
+            }
+        }
+        self.shut = shut;
+    }
+
     /// From now on the robot keeps out of these cells, and forgets what it knows of them and
     /// of those that it kept out of before. Work: every tile, with its neighbours.
     pub(crate) fn keep_out(&mut self, cells: Option<&'static CellSet<TW, TH>>) {

@@ -3,6 +3,7 @@
 use heapless::Vec;
 
 use crate::cell::Cell;
+use crate::list;
 
 /// Places that are remembered; of more, the last ones.
 pub const MOST_PLACES: usize = 8;
@@ -20,6 +21,12 @@ impl Shut {
             cells: 0,
             places: Vec::new(),
         }
+    }
+
+    /// So many cells, and the last of them, the latest one last.
+    pub(crate) fn of(cells: u32, places: impl Iterator<Item = Cell>) -> Self {
+        let places = list::collect(places);
+        Self { cells, places }
     }
 
     /// Number of cells that had been free and became walls, without those that were seen

@@ -112,6 +112,23 @@ impl<const TH: usize> Link<TH> {
         self.sender.hearsay
     }
 
+    /// Names the grid.
+    pub(crate) const fn grid(&self) -> GridId {
+        self.sender.grid
+    }
+
+    /// The number of the next frame.
+    pub(crate) const fn sequence(&self) -> u16 {
+        self.sender.sequence
+    }
+
+    /// Goes on after frames up to number `sequence`, and maybe as many more as can be under
+    /// way, with a map of which others told so many cells.
+    pub(crate) fn restore(&mut self, sequence: u16, cells: u32) {
+        self.sender.sequence = sequence.wrapping_add(UNDER_WAY);
+        self.sender.hearsay.told(cells);
+    }
+
     /// The tiles that changed since the last call, for media that carry whole maps.
     pub fn take_changed<const TW: usize>(&mut self, map: &mut Map<TW, TH>) -> TileSet<TH> {
         let mut changed = map.take_changed();

@@ -29,12 +29,9 @@ fn main() -> ExitCode {
 fn run() -> Result<(), Box<dyn Error>> {
     let words = std::env::args().skip(1);
     let arguments = Arguments::parse(words, |path| std::fs::read_to_string(path))?;
-    let (parameters, idle) = Parameters::read(arguments.parameters.clone())?;
-    for name in idle {
-        eprintln!(
-            "[{}]: parameter {name} has no meaning here",
-            arguments.node()
-        );
+    let (parameters, notes) = Parameters::read(arguments.parameters.clone())?;
+    for note in notes {
+        eprintln!("[{}]: {note}", arguments.node());
     }
     node::run(&arguments, parameters)?;
     Ok(())

@@ -12,6 +12,9 @@ pub(crate) const TILES: usize = 16;
 /// Cells of the map each way, at most.
 pub(crate) const CELLS: u16 = 8 * TILES as u16;
 
+/// Decisions a second at least. explore_lite, whose files say less, only searches then.
+const LEAST_FREQUENCY: f64 = 5.0;
+
 /// What ROS sets on any node, and what only weighs explore_lite's frontiers: not wrong, but
 /// without a meaning here.
 const IDLE: [&str; 6] = [
@@ -195,17 +198,19 @@ pub(crate) enum ParameterError {
 }
 
 impl Parameters {
-    /// Reads them; also returns the names of those that have no meaning here.
+    /// Reads them; also returns what is to be told of them.
     ///
     /// # Errors
     /// One is unknown, of another type, or impossible.
-    pub(crate) fn read(mut values: Mapping) -> Result<(Self, Vec<&'static str>), ParameterError> {
+    pub(crate) fn read(mut values: Mapping) -> Result<(Self, Vec<String>), ParameterError> {
         let idle = IDLE
             .into_iter()
             .filter(|name| values.remove(name).is_some());
-        let idle = idle.collect();
+        let mut notes: Vec<String> = idle
+            .map(|name| format!("parameter {name} has no meaning here"))
+            .collect();
         let parse = |values| serde_yaml_ng::from_value::<Self>(Value::Mapping(values));
-        let read = parse(values.clone()).map_err(|error| {
+        let mut read = parse(values.clone()).map_err(|error| {
             // Which one is it? The first that alone is wrong.
             let alone = |(name, value)| Mapping::from_iter([(name, value)]);
             let wrong = values.into_iter().find_map(|(name, value)| {
@@ -216,7 +221,15 @@ impl Parameters {
             ParameterError::Parse(name, why)
         })?;
         read.check()?;
-        Ok((read, idle))
+        if read.planner_frequency < LEAST_FREQUENCY {
+            notes.push(format!(
+                "parameter planner_frequency is {}: taken for {LEAST_FREQUENCY}; robots here decide at \
+                 every step, and wait for a number of decisions",
+                read.planner_frequency
+            ));
+            read.planner_frequency = LEAST_FREQUENCY;
+        }
+        Ok((read, notes))
     }
 
     fn check(&self) -> Result<(), ParameterError> {
@@ -344,10 +357,11 @@ mod tests {
                     orientation_scale: 0.0, gain_scale: 1.0, transform_tolerance: 0.3, \
                     min_frontier_size: 0.75, return_to_init: true, use_sim_time: true, \
                     costmap_updates_topic: map_updates}";
-        let (read, idle) = Parameters::read(serde_yaml_ng::from_str(text).unwrap()).unwrap();
+        let (read, notes) = Parameters::read(serde_yaml_ng::from_str(text).unwrap()).unwrap();
         assert!(read.return_to_init && read.config().come_home);
         assert_eq!(read.costmap_topic, "map");
-        assert_eq!(idle.len(), IDLE.len());
+        assert_eq!(notes.len(), IDLE.len() + 1, "{notes:?}");
+        assert_eq!(read.planner_frequency, LEAST_FREQUENCY);
     }
 
     #[test]

@@ -16,17 +16,21 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// Largest width and height of a grid, in cells, and size of a planner in words of 8 bytes.
+// Largest width and height of a grid, in cells, and sizes of a planner and of a set of cells
+// in words of 8 bytes.
 // Define PLANNER_CELLS_32 or PLANNER_CELLS_64 for the object of that size.
 #if defined(PLANNER_CELLS_32)
 #define PLANNER_MAX_CELLS 32
 #define PLANNER_WORDS 529
+#define PLANNER_CELL_SET_WORDS 16
 #elif defined(PLANNER_CELLS_64)
 #define PLANNER_MAX_CELLS 64
 #define PLANNER_WORDS 1153
+#define PLANNER_CELL_SET_WORDS 64
 #else
 #define PLANNER_MAX_CELLS 128
 #define PLANNER_WORDS 3630
+#define PLANNER_CELL_SET_WORDS 256
 #endif
 
 // The robot is on the cell that it was sent to.
@@ -97,6 +101,19 @@ typedef enum {
   PLANNER_RESULT_MEMORY = 20,
   // The clearance is above 3.
   PLANNER_RESULT_CLEARANCE = 21,
+  // The robot or its home lies in the cells that it is to keep out of, or its body would
+  // reach into them there.
+  PLANNER_RESULT_KEPT_OUT = 22,
+  // Nothing was saved there.
+  PLANNER_RESULT_NO_SAVE = 23,
+  // The save is of another version of the library.
+  PLANNER_RESULT_SAVE_VERSION = 24,
+  // The save is damaged or cut short.
+  PLANNER_RESULT_SAVE_DAMAGED = 25,
+  // The save is of a grid of another size, origin or size of cells.
+  PLANNER_RESULT_SAVE_OTHER_GRID = 26,
+  // The save is of a robot with another id.
+  PLANNER_RESULT_SAVE_OTHER_ROBOT = 27,
 } PlannerResult;
 
 // What the robot shall do.
@@ -162,7 +179,8 @@ typedef enum {
   PLANNER_WAIT_NONE = 0,
   // It has seen nothing yet: call `planner_observe_scan` or `planner_observe_cells`.
   PLANNER_WAIT_SIGHT = 1,
-  // Its place lies off the grid: nothing is decided until one lies on it again.
+  // Its place lies off the grid, or on a cell that it keeps out of: nothing is decided
+  // until one lies elsewhere.
   PLANNER_WAIT_POSE = 2,
   // It searches the map.
   PLANNER_WAIT_SEARCH = 3,
@@ -323,6 +341,11 @@ typedef struct {
   PlannerDirection look;
 } PlannerAction;
 
+// Cells of a grid, a bit each. All zero there are none: make it with `= {0}`.
+typedef struct {
+  uint64_t words[PLANNER_CELL_SET_WORDS];
+} PlannerCellSet;
+
 // Where a robot is, what it knows, and what it has from others. Counts begin when the
 // planner is created; those of 16 bits stay at their largest value.
 typedef struct {
@@ -479,6 +502,49 @@ PlannerResult planner_shut(Planner *planner,
                            PlannerCell *places,
                            size_t room,
                            size_t *count);
+
+// Adds the rectangle between two opposite corners, both of them in it, as far as it lies on
+// the grid. Work: a few instructions a cell.
+//
+// Stack: 128 bytes.
+PlannerResult planner_add_rectangle(PlannerCellSet *set, PlannerCell corner, PlannerCell opposite);
+
+// From now on the robot enters none of these cells, nor touches one with its body, and need
+// not see them; null: it may enter all. "Complete" is then meant without them, and others
+// are told nothing of them. A robot that had stopped goes on. The set stays yours, in RAM or
+// flash: it must stay where it is, and as it is, until the next such call or
+// `planner_create`. `PLANNER_RESULT_KEPT_OUT`: the robot or its home lies in them, and
+// nothing has changed.
+//
+// Stack: 384 bytes.
+PlannerResult planner_keep_out(Planner *planner, const PlannerCellSet *set);
+
+// Writes how many bytes a save takes: 1,604 for 64×64 cells.
+//
+// Stack: 128 bytes.
+PlannerResult planner_saved_bytes(Planner *planner, size_t *bytes);
+
+// Writes the bytes of a save from number `first` on into `bytes`, as many as there is `room`
+// for or left, and how many into `written`; 0: the save is whole. So it goes to flash a page
+// at a time. Make no other call between the pages, or the save is refused later as damaged.
+// Kept are the map, where the robot and its home are, and the number of its next frame; not
+// plans, nor what it heard of the others. Work: the whole save, about 100 instructions a
+// byte.
+//
+// Stack: 640 bytes.
+PlannerResult planner_save(Planner *planner,
+                           size_t first,
+                           uint8_t *bytes,
+                           size_t room,
+                           size_t *written);
+
+// Goes on from a save, after `planner_create` with the same grid and id; what lies behind
+// its last byte does not matter. The robot keeps out of what it did, if that is told before,
+// and has no limit of energy until it is told. A result other than `PLANNER_RESULT_OK` says
+// what is wrong with the save, and nothing has changed.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_restore(Planner *planner, const uint8_t *bytes, size_t count);
 
 // The pose of a robot at `x`, `y` in metres, y to the left of x, whose `yaw` in radians
 // grows counter-clockwise from x: the frame of ROS and of the Crazyflie. In the grid y

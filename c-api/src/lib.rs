@@ -7,6 +7,7 @@
 //! pointer is as large as its type, and that nobody else uses it during a call.
 #![cfg_attr(target_os = "none", no_std)]
 
+mod limits;
 mod place;
 mod queries;
 mod types;
@@ -17,7 +18,12 @@ use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
 use planner_core::{Cell, Errands as _, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
-pub use place::{PLANNER_MAX_CELLS, PLANNER_WORDS, Planner};
+pub use limits::{
+    planner_add_rectangle, planner_keep_out, planner_restore, planner_save, planner_saved_bytes,
+};
+pub use place::{
+    PLANNER_CELL_SET_WORDS, PLANNER_MAX_CELLS, PLANNER_WORDS, Planner, PlannerCellSet,
+};
 pub use queries::{
     planner_cell, planner_middle_in_metres, planner_pose_from_metres, planner_result_text,
     planner_row, planner_status, planner_stop_text, planner_wait_text, planner_way,

@@ -1,5 +1,6 @@
 //! From pointers to references: the only unsafe code, and why it is sound.
 
+use planner_core::CellSet;
 use planner_core::explorer::Explorer;
 
 use crate::types::PlannerResult;
@@ -42,6 +43,30 @@ pub(crate) const TILES: usize = PLANNER_MAX_CELLS as usize / 8;
 pub struct Planner {
     words: [u64; PLANNER_WORDS],
 }
+
+/// Cells of a grid, a bit each. All zero there are none: make it with `= {0}`.
+#[repr(C)]
+pub struct PlannerCellSet {
+    words: [u64; PLANNER_CELL_SET_WORDS],
+}
+
+impl PlannerCellSet {
+    /// No cell.
+    pub const NONE: Self = Self {
+        words: [0; PLANNER_CELL_SET_WORDS],
+    };
+}
+
+/// Size of a set of cells in words of 8 bytes.
+///
+/// cbindgen:ignore
+pub const PLANNER_CELL_SET_WORDS: usize = TILES * TILES;
+
+/// What lies in a [`PlannerCellSet`].
+pub(crate) type Cells = CellSet<TILES, TILES>;
+
+const _: () = assert!(size_of::<Cells>() == size_of::<PlannerCellSet>());
+const _: () = assert!(align_of::<Cells>() == align_of::<PlannerCellSet>());
 
 /// What lies in a [`Planner`] once it is created.
 #[repr(C)]
@@ -131,6 +156,28 @@ pub(crate) fn inputs<'a, T: Copy>(
     // SAFETY: as `input`, for `count` values in a row; their size does not
     // overflow.
     Ok(unsafe { core::slice::from_raw_parts(pointer, count) })
+}
+
+/// Cells of the caller, to be changed.
+pub(crate) fn cells<'a>(pointer: *mut PlannerCellSet) -> Result<&'a mut Cells, PlannerResult> {
+    check(pointer)?;
+    // SAFETY: not null, aligned, of the same size by the assertions above, and by the
+    // header's contract nobody else's meanwhile. All bits are a set of cells.
+    Ok(unsafe { &mut *pointer.cast::<Cells>() })
+}
+
+/// Bytes that the caller gives room for.
+pub(crate) fn page<'a>(pointer: *mut u8, room: usize) -> Result<&'a mut [u8], PlannerResult> {
+    if room == 0 {
+        return Ok(&mut []);
+    }
+    check(pointer)?;
+    if room > isize::MAX as usize {
+        return Err(PlannerResult::TooMany);
+    }
+    // SAFETY: not null, and by the header's contract so many bytes, of which the caller
+    // uses none meanwhile. All bits are a byte.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer, room) })
 }
 
 /// Where the caller wants a value; it need not hold one yet.

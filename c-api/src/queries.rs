@@ -216,7 +216,7 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
 }
 
 /// By [`PlannerResult`].
-pub(crate) const RESULTS: [&CStr; 22] = [
+pub(crate) const RESULTS: [&CStr; 28] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
@@ -239,6 +239,12 @@ pub(crate) const RESULTS: [&CStr; 22] = [
     c"no such sensor",
     c"header and library are of different sizes",
     c"no such clearance",
+    c"the robot or its home lies in cells that it is to keep out of",
+    c"nothing was saved there",
+    c"the save is of another version",
+    c"the save is damaged or cut short",
+    c"the save is of another grid",
+    c"the save is of another robot",
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop).

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-const CONFIG: PlannerConfig = PlannerConfig {
+pub(crate) const CONFIG: PlannerConfig = PlannerConfig {
     id: 1,
     width: 9,
     height: 9,
@@ -58,7 +58,7 @@ fn status(planner: *mut Planner) -> PlannerStatus {
     status
 }
 
-fn memory() -> Box<[u64]> {
+pub(crate) fn memory() -> Box<[u64]> {
     vec![0; PLANNER_WORDS].into()
 }
 
@@ -66,7 +66,7 @@ fn planner(memory: &mut [u64]) -> *mut Planner {
     memory.as_mut_ptr().cast()
 }
 
-fn created(memory: &mut [u64], config: PlannerConfig) -> *mut Planner {
+pub(crate) fn created(memory: &mut [u64], config: PlannerConfig) -> *mut Planner {
     let planner = planner(memory);
     assert_eq!(planner_create(planner, SIZE, &config), PlannerResult::Ok);
     planner
@@ -77,7 +77,12 @@ fn the_header_knows_the_sizes() {
     let header = include_str!("../include/planner.h");
     for cells in [32, 64, 128] {
         let words = place::words(cells);
-        let lines = format!("PLANNER_MAX_CELLS {cells}\n#define PLANNER_WORDS {words}\n");
+        let tiles = cells / 8;
+        let lines = format!(
+            "PLANNER_MAX_CELLS {cells}\n#define PLANNER_WORDS {words}\n\
+             #define PLANNER_CELL_SET_WORDS {}\n",
+            tiles * tiles
+        );
         assert!(header.contains(&lines), "{lines}");
     }
 }

@@ -3,7 +3,7 @@
 use planner_core::explorer::SensorModel;
 use planner_core::radio::FrameError;
 use planner_core::sight::{Beam, Bearing, Pose};
-use planner_core::{Action, Cell, Direction, Map, Reason, Wait};
+use planner_core::{Action, Cell, Direction, Map, Reason, RestoreError, Wait};
 
 /// What came of a call.
 #[repr(C)]
@@ -57,6 +57,31 @@ pub enum PlannerResult {
     Memory = 20,
     /// The clearance is above 3.
     Clearance = 21,
+    /// The robot or its home lies in the cells that it is to keep out of, or its body would
+    /// reach into them there.
+    KeptOut = 22,
+    /// Nothing was saved there.
+    NoSave = 23,
+    /// The save is of another version of the library.
+    SaveVersion = 24,
+    /// The save is damaged or cut short.
+    SaveDamaged = 25,
+    /// The save is of a grid of another size, origin or size of cells.
+    SaveOtherGrid = 26,
+    /// The save is of a robot with another id.
+    SaveOtherRobot = 27,
+}
+
+impl From<RestoreError> for PlannerResult {
+    fn from(error: RestoreError) -> Self {
+        match error {
+            RestoreError::Unable | RestoreError::NoSave => Self::NoSave,
+            RestoreError::Version(_) => Self::SaveVersion,
+            RestoreError::Damaged => Self::SaveDamaged,
+            RestoreError::Grid(_) => Self::SaveOtherGrid,
+            RestoreError::Robot(_) => Self::SaveOtherRobot,
+        }
+    }
 }
 
 impl From<FrameError> for PlannerResult {
@@ -373,7 +398,8 @@ pub enum PlannerWait {
     None = 0,
     /// It has seen nothing yet: call `planner_observe_scan` or `planner_observe_cells`.
     Sight = 1,
-    /// Its place lies off the grid: nothing is decided until one lies on it again.
+    /// Its place lies off the grid, or on a cell that it keeps out of: nothing is decided
+    /// until one lies elsewhere.
     Pose = 2,
     /// It searches the map.
     Search = 3,

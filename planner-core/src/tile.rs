@@ -175,6 +175,7 @@ pub(crate) fn neighbours(at: TileIndex, layer: impl Fn(TileIndex) -> u64) -> u64
 
 /// A value for each tile of a map.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub(crate) struct Tiles<T, const TW: usize, const TH: usize>([[T; TW]; TH]);
 
 impl<T: Copy, const TW: usize, const TH: usize> Tiles<T, TW, TH> {

@@ -7,7 +7,8 @@ use crate::tile::{TILE, TileIndex, Tiles};
 ///
 /// Empty it is all zero, so a `static` of it costs no flash. Made of words
 /// ([`from_words`](Self::from_words)), a `const` of it lies in flash and costs no RAM.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(transparent)]
 pub struct CellSet<const TW: usize, const TH: usize>(Tiles<u64, TW, TH>);
 
 impl<const TW: usize, const TH: usize> Default for CellSet<TW, TH> {

@@ -106,6 +106,11 @@ impl Lot {
         (self.0 >> 32) < below
     }
 
+    /// A number from 0 to below 1.
+    pub(crate) fn unit(self) -> f64 {
+        (self.0 >> 11) as f64 / 2f64.powi(53)
+    }
+
     /// A number in `0..n`; `n` must not be 0.
     pub(crate) const fn below(self, n: u32) -> u32 {
         (((self.0 >> 32) * n as u64) >> 32) as u32

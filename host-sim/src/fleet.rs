@@ -1,5 +1,7 @@
 //! Robots in a world, and the tick that moves them all.
 
+mod drive;
+
 use std::sync::Arc;
 
 use planner_core::explorer::{bodies_touch, body_cells};
@@ -7,11 +9,11 @@ use planner_core::tile::TileIndex;
 use planner_core::{Action, AnyPlanner, Cell, Direction, Motion, RobotId, TileSet, Wait, role};
 
 use crate::medium::{Medium, Message};
-use crate::robot::{Deed, Robot, Sent, Step, Violation};
-use crate::scenario::{Event, Faults, Trouble};
-use crate::senses::Senses;
+use crate::motion::Drivers;
+use crate::robot::{Deed, Driven, Robot, Sent, Step, Touches, Violation};
+use crate::scenario::{Event, Faults, Motion as InMetres, Trouble};
+use crate::senses::{Senses, laid};
 use crate::sensor::Sensor;
-use serde::Serialize;
 
 /// How the robots of a fleet share the world.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +22,8 @@ pub struct Rules {
     pub solid: bool,
     /// Cells that bodies reach beyond the one of their centre.
     pub clearance: u8,
+    /// How bodies move; `None`: a cell a tick.
+    pub motion: Option<InMetres>,
     /// What goes wrong.
     pub faults: Faults,
     /// How the world misleads robots.
@@ -28,16 +32,6 @@ pub struct Rules {
     pub seed: u64,
     /// Steps that the energy of a robot lasts for that goes on after a stop; 0: no limit.
     pub energy: u32,
-}
-
-/// Steps in which bodies would have touched: none was made. Anything but none is a bug of a
-/// planner that knew better.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Touches {
-    /// With an obstacle, a person or a shut door.
-    pub walls: u32,
-    /// With another robot.
-    pub bodies: u32,
 }
 
 /// Makes the planner of a robot that stands on a cell and knows nothing.
@@ -54,6 +48,8 @@ pub struct Fleet<const TW: usize, const TH: usize> {
     violations: Vec<Violation>,
     bumps: u32,
     touches: Touches,
+    /// What drives bodies that move in metres.
+    drivers: Option<Drivers>,
     all_tiles: TileSet<TH>,
     tick: u32,
 }
@@ -86,6 +82,10 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             }
         };
         let robots = starts.iter().zip(0..).map(robot).collect();
+        let are_solid = rules.solid || rules.clearance > 0;
+        let drivers = rules
+            .motion
+            .map(|motion| Drivers::new(motion, rules.clearance, are_solid, rules.seed, starts));
         Self {
             senses: Senses::new(sensor, &rules.faults, rules.trouble, rules.seed, starts),
             medium,
@@ -95,6 +95,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             violations: Vec::new(),
             bumps: 0,
             touches: Touches::default(),
+            drivers,
             all_tiles,
             tick: 0,
         }
@@ -148,6 +149,12 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         self.touches
     }
 
+    /// How far a body went that moves in metres; otherwise nowhere.
+    pub fn driven(&self, robot: usize) -> Driven {
+        let drivers = self.drivers.as_ref();
+        drivers.map_or(Driven::default(), |of| of.driven(robot))
+    }
+
     /// Whether every living robot has stopped, and none is still to come or to go on.
     pub fn has_stopped(&self) -> bool {
         !self.rules.faults.still_to_come(self.tick)
@@ -158,22 +165,17 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
     }
 
     /// One tick: all look, then all talk if it is time, then one after another
-    /// decides and moves.
+    /// decides and moves; bodies that move in metres then go on all at once.
     pub fn tick(&mut self) {
         self.meet_fate();
-        self.senses.begin(self.tick);
-        for (index, robot) in self.robots.iter_mut().enumerate() {
-            if !robot.alive {
-                continue;
-            }
-            for look in 0..self.rules.trouble.looks {
-                let sighting = self.senses.sighting(index, look, robot.position);
-                robot.planner.observe(&sighting);
-            }
-            robot.has_exchanged = false;
-            robot.sent = Sent::default();
-        }
+        self.look();
         self.medium.exchange(self.tick, &mut self.robots);
+        if let Some(mut drivers) = self.drivers.take() {
+            self.drive(&mut drivers);
+            self.drivers = Some(drivers);
+            self.tick += 1;
+            return;
+        }
         for index in 0..self.robots.len() {
             let robot = &self.robots[index];
             if robot.alive {
@@ -193,6 +195,26 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             }
         }
         self.tick += 1;
+    }
+
+    fn look(&mut self) {
+        self.senses.begin(self.tick);
+        for (index, robot) in self.robots.iter_mut().enumerate() {
+            if !robot.alive {
+                continue;
+            }
+            let drivers = self.drivers.as_ref();
+            let believed = drivers.map_or(robot.position, |of| of.believed_cell(index));
+            for look in 0..self.rules.trouble.looks {
+                let sighting = self.senses.sighting(index, look, robot.position);
+                match believed == robot.position {
+                    true => robot.planner.observe(&sighting),
+                    false => robot.planner.observe(&laid(&sighting, believed)),
+                };
+            }
+            robot.has_exchanged = false;
+            robot.sent = Sent::default();
+        }
     }
 
     /// A robot goes on after a stop, with the map that it has and with new energy.
@@ -228,6 +250,9 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             if now(&faults.restarts) && robot.is_there {
                 robot.alive = true;
                 robot.planner = (self.build)(robot.id, robot.position);
+                if let Some(drivers) = &mut self.drivers {
+                    drivers.realign(usize::from(robot.id.0));
+                }
             }
         }
         let resumes = faults.resumes.iter().filter(|of| of.tick == self.tick);

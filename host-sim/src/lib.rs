@@ -27,6 +27,7 @@ pub mod live;
 pub mod measured;
 pub mod medium;
 mod mission;
+mod motion;
 pub mod planners;
 pub mod record;
 pub mod robot;

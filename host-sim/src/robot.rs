@@ -61,6 +61,28 @@ pub struct Sent {
     pub bytes: u32,
 }
 
+/// Steps in which bodies would have touched: none was made. Anything but none is a bug of a
+/// planner that knew better. Of bodies that [move in metres](crate::scenario::Motion): how
+/// often one ran into something.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Touches {
+    /// With an obstacle, a person or a shut door.
+    pub walls: u32,
+    /// With another robot.
+    pub bodies: u32,
+}
+
+/// How far a body went that moves in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Driven {
+    /// The length of its way.
+    pub millimetres: u32,
+    /// Thousandths of full turns that it made, to either side.
+    pub milliturns: u32,
+    /// What it ran into.
+    pub touches: Touches,
+}
+
 /// What a decision came to; `S` says why a robot had stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Deed<S = Stop> {
@@ -78,6 +100,8 @@ pub enum Deed<S = Stop> {
     Yielded,
     /// Stood still.
     Waited,
+    /// Was on its way within its cell.
+    Driving,
     /// Turned its sensor there.
     Looked(Direction),
     /// Had stopped.
@@ -93,7 +117,7 @@ impl<S> Deed<S> {
             | Self::Held(to)
             | Self::Exchanged(to)
             | Self::Looked(to) => Some(*to),
-            Self::Yielded | Self::Waited | Self::Stopped(_) => None,
+            Self::Yielded | Self::Waited | Self::Driving | Self::Stopped(_) => None,
         }
     }
 }

@@ -4,10 +4,9 @@ use std::sync::Arc;
 
 use clap::ValueEnum;
 use host_sim::draw;
-use host_sim::fleet::Touches;
 use host_sim::planners::{PlannerKind, Setup};
 use host_sim::record::grid::Trace;
-use host_sim::robot::Deed;
+use host_sim::robot::{Deed, Touches};
 use host_sim::run::{self, Host, Options, Outcome, run_compiled};
 use host_sim::scenario::ScenarioError;
 use host_sim::scenario::grid::Scenario;

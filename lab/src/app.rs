@@ -242,6 +242,7 @@ impl App {
 
     /// Shows a trace that was opened.
     pub fn replay(&mut self, trace: Trace) {
+        let in_metres = trace.scenario.motion.is_some();
         let setup = Setup::of(&trace.scenario);
         let watch = Watch::replay(trace);
         self.runs = vec![self.shown(setup.clone(), watch, None)];
@@ -250,7 +251,10 @@ impl App {
         self.survey = None;
         self.selected = None;
         self.camera = Camera::default();
-        self.notice = None;
+        self.notice = in_metres.then(|| Notice {
+            text: "These robots moved in metres; what is run from here makes a cell a tick.".into(),
+            is_error: false,
+        });
         self.playing = true;
     }
 

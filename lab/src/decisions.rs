@@ -43,7 +43,7 @@ pub fn decisions(watch: &Watch, robot: usize, most: usize) -> Vec<Decision> {
             Deed::Yielded => say("gives its role to a robot that wanted its cell".into()),
             Deed::Looked(way) => say(format!("looks {}", name(way))),
             Deed::Stopped(reason) if !stopped => say(stop(reason).into()),
-            Deed::Moved(_) | Deed::Waited | Deed::Stopped(_) => {}
+            Deed::Moved(_) | Deed::Waited | Deed::Driving | Deed::Stopped(_) => {}
         }
         let has_stopped = matches!(record.deed, Deed::Stopped(_));
         if stopped && !has_stopped {

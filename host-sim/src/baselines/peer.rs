@@ -2,6 +2,7 @@
 
 use planner_core::ExtentError;
 use planner_core::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
+use planner_core::sight::line_of_sight;
 use planner_core::{
     Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, Map, Motion, Persist,
     Planner, RobotId, Sighting, Status, Stop, TileSet,
@@ -40,6 +41,9 @@ impl Term {
         until_resolved: true,
     };
 }
+
+/// Steps of the way that are tried for a waypoint, as the explorer does.
+const LONGEST: usize = 64;
 
 /// Ticks for which a cell that could not be entered is taken for closed.
 const CLOSED_TICKS: u32 = 8;
@@ -116,12 +120,14 @@ impl<const TW: usize, const TH: usize> Peer<TW, TH> {
         })
     }
 
-    /// Whether the assignment holds and its next cell can be entered.
+    /// Whether the assignment holds and its next cell is beside the robot and can be entered.
     fn has_way(&self) -> bool {
         let is_resolved = || !self.goal.is_some_and(|goal| self.map.is_frontier(goal));
         let term = self.rule.term();
         let has_ended = self.moves >= term.moves || term.until_resolved && is_resolved();
-        !has_ended && self.way.last().is_some_and(|&next| self.map.is_free(next))
+        let is_beside = |next: Cell| self.position.direction_to(next).is_some();
+        let can_be_entered = |&next: &Cell| is_beside(next) && self.map.is_free(next);
+        !has_ended && self.way.last().is_some_and(can_be_entered)
     }
 
     fn assign(&mut self) {
@@ -178,6 +184,12 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
         if self.is_astray {
             return Learnt::default();
         }
+        let on_way = self.way.iter().rposition(|&cell| cell == sighting.centre());
+        if let Some(left) = on_way {
+            // It came there in its own way, and goes on from there.
+            self.moves += (self.way.len() - left) as u32;
+            self.way.truncate(left);
+        }
         self.position = sighting.centre();
         let seen = sighting.free_cells().chain(sighting.blocked_cells());
         let farthest = seen.map(|cell| cell.distance_squared(self.position)).max();
@@ -210,6 +222,13 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
             Some(direction) => Action::Move(direction),
             None => self.rest(),
         }
+    }
+
+    fn waypoint(&self) -> Option<Cell> {
+        let is_closed = |cell| !self.map.is_free(cell);
+        let ahead = self.way.iter().rev().take(LONGEST).rev();
+        let mut farthest_first = ahead.copied();
+        farthest_first.find(|&cell| line_of_sight(self.position, cell, is_closed))
     }
 
     fn resume(&mut self) {

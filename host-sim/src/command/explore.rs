@@ -15,7 +15,7 @@ use host_sim::record::grid::Trace;
 use host_sim::run::{self, Options, Outcome, Progress};
 use host_sim::scans::Laser;
 use host_sim::scenario::grid::Scenario;
-use host_sim::scenario::{ConditionsArgs, MediumKind};
+use host_sim::scenario::{ConditionsArgs, MediumKind, MotionArgs};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
@@ -73,6 +73,8 @@ pub(crate) struct Explore {
     /// open: maps, poses, goals and scans. Compile with `--features mcap`.
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
+    #[command(flatten)]
+    motion: MotionArgs,
     #[command(flatten)]
     output: OutputArgs,
     #[command(flatten)]
@@ -193,6 +195,12 @@ impl Explore {
         self.conditions.has_key()
     }
 
+    /// Whether bodies move in metres.
+    #[cfg(unix)]
+    pub(super) fn has_motion(&self) -> bool {
+        self.motion.is_given()
+    }
+
     fn read_options(&self) -> ReadOptions {
         let scale = match (self.pixels_per_cell, self.cell_size) {
             (Some(pixels), _) => Scale::Pixels(pixels),
@@ -207,15 +215,18 @@ impl Explore {
 
     fn scenario(&self, world: Arc<World>) -> Result<Scenario, Box<dyn Error>> {
         let starts = self.starts(&world)?;
+        let motion = self.motion.motion(&world, self.clearance)?;
+        let solid = self.solid || motion.is_some();
         let starts = match self.clearance {
-            0 => world.place(self.robots.into(), &starts, self.solid)?,
+            0 => world.place(self.robots.into(), &starts, solid)?,
             clearance => world.place_bodies(self.robots.into(), &starts, clearance)?,
         };
         let mut scenario = Scenario::new(world, starts, self.planner);
         scenario.range = self.range;
         scenario.fov = self.fov;
-        scenario.solid = self.solid;
+        scenario.solid = solid;
         scenario.clearance = self.clearance;
+        scenario.move_in_metres(motion);
         scenario.conditions.medium = MediumKind::Radio;
         scenario.conditions.seed = SEED;
         self.conditions.clone().set(&mut scenario.conditions)?;

@@ -26,6 +26,11 @@ impl Firmware {
                 "--key: the image is built without keys; explore, and robot, sign frames".into(),
             );
         }
+        if self.explore.has_motion() {
+            return Err(
+                "--motion: emulated chips make unit steps; explore moves bodies in metres".into(),
+            );
+        }
         let image = self.image.unwrap_or_else(|| self.machine.image());
         let swarm = Swarm::new(self.machine, image);
         self.explore.run_by(|scenario, options| {

@@ -67,6 +67,21 @@ pub(super) fn print(summary: &Summary, out: &Path) {
             body.touches.walls, body.touches.bodies, body.narrow_cells
         );
     }
+    if let Some(motion) = &summary.motion {
+        let after = |seconds: Option<f64>| {
+            seconds.map_or("never".into(), |seconds| format!("after {seconds:.0} s"))
+        };
+        println!(
+            "  {:<18} everything seen {}, every robot done {}",
+            format!("{} at {} m/s", motion.motion.drive, motion.motion.speed),
+            after(motion.seconds_to_seen),
+            after(motion.seconds_to_stopped),
+        );
+        println!(
+            "  in all             {:.1} m, {:.1} full turns; touched walls {} times, each other {} times",
+            motion.metres, motion.turns, motion.touches.walls, motion.touches.bodies
+        );
+    }
     for (number, robot) in summary.robots.iter().enumerate() {
         for doubt in doubts(robot) {
             println!("  robot {number:<3} {doubt}");

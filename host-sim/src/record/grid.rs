@@ -51,7 +51,9 @@ const WAITED: u8 = 16;
 const YIELDED: u8 = 17;
 const LOOKED: u8 = 18;
 /// A look to the north.
-const LAST_ACT: u8 = LOOKED + 3;
+const LAST_LOOK: u8 = LOOKED + 3;
+const DRIVING: u8 = 22;
+const LAST_ACT: u8 = DRIVING;
 
 /// What is written down of why a robot had stopped.
 impl From<Deed> for Deed<Reason> {
@@ -63,6 +65,7 @@ impl From<Deed> for Deed<Reason> {
             Deed::Exchanged(to) => Self::Exchanged(to),
             Deed::Yielded => Self::Yielded,
             Deed::Waited => Self::Waited,
+            Deed::Driving => Self::Driving,
             Deed::Looked(to) => Self::Looked(to),
             Deed::Stopped(stop) => Self::Stopped(stop.reason()),
         }
@@ -72,7 +75,7 @@ impl From<Deed> for Deed<Reason> {
 /// The action in files and digests: 0 to 3 moved east, south, west, north; 4 to 7 tried to,
 /// and was blocked; 8 to 11 and was held by a robot that goes first; 12 to 15 and exchanged
 /// roles with the robot there; 16 waited; 17 gave its role away before it had acted; 18 to
-/// 21 turned its sensor to the east, south, west, north; from 32 on had stopped, 32 and
+/// 21 turned its sensor to the east, south, west, north; 22 drove within its cell; from 32 on had stopped, 32 and
 /// [`Reason::code`].
 impl From<Deed<Reason>> for u8 {
     fn from(deed: Deed<Reason>) -> Self {
@@ -82,6 +85,7 @@ impl From<Deed<Reason>> for u8 {
             Deed::Held(to) => HELD + to as u8,
             Deed::Exchanged(to) => EXCHANGED + to as u8,
             Deed::Waited => WAITED,
+            Deed::Driving => DRIVING,
             Deed::Yielded => YIELDED,
             Deed::Looked(to) => LOOKED + to as u8,
             Deed::Stopped(reason) => action_of(reason),
@@ -101,7 +105,8 @@ impl TryFrom<u8> for Deed<Reason> {
             EXCHANGED..WAITED => Self::Exchanged(to(EXCHANGED)),
             WAITED => Self::Waited,
             YIELDED => Self::Yielded,
-            LOOKED..=LAST_ACT => Self::Looked(to(LOOKED)),
+            LOOKED..=LAST_LOOK => Self::Looked(to(LOOKED)),
+            DRIVING => Self::Driving,
             _ => Self::Stopped(reason_of(action, LAST_ACT)?),
         })
     }
@@ -136,6 +141,7 @@ impl Record {
             | Deed::Exchanged(_)
             | Deed::Yielded
             | Deed::Waited
+            | Deed::Driving
             | Deed::Looked(_)
             | Deed::Stopped(_) => self.at,
         }

@@ -8,9 +8,9 @@ use planner_core::{Cell, Direction, Map};
 use super::claims::wrong;
 use super::{Assignments, Outcome, Progress, RobotOutcome};
 use crate::coverage::Coverage;
-use crate::fleet::{Fleet, Touches};
+use crate::fleet::Fleet;
 use crate::record::grid::{Record, Trace};
-use crate::robot::{Deed, Robot, Sent};
+use crate::robot::{Deed, Driven, Robot, Sent, Touches};
 use crate::scenario::grid::Scenario;
 use crate::senses::Senses;
 use crate::sensor::Sensor;
@@ -55,6 +55,7 @@ impl Book {
                     cells_unheard: 0,
                     work: 0,
                     sent: Sent::default(),
+                    driven: Driven::default(),
                     stop: None,
                     is_home: false,
                     alive: true,
@@ -102,7 +103,7 @@ impl Book {
                 Deed::Moved(_) => noted.steps += 1,
                 Deed::Blocked(_) => noted.blocked_steps += 1,
                 Deed::Held(_) | Deed::Exchanged(_) | Deed::Yielded => {}
-                Deed::Looked(_) => {}
+                Deed::Looked(_) | Deed::Driving => {}
                 Deed::Waited => noted.waited_ticks += 1,
                 Deed::Stopped(stop) => {
                     noted.active_ticks -= 1;
@@ -159,6 +160,7 @@ impl Book {
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
+            noted.driven = fleet.driven(robot.id.0.into());
             // Where bodies exchange roles, those that come home may have started elsewhere.
             noted.is_home = robot.position == start
                 || scenario.solid && scenario.starts.contains(&robot.position);

@@ -127,6 +127,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
     let rules = Rules {
         solid: scenario.solid,
         clearance: scenario.clearance,
+        motion: scenario.motion,
         faults: scenario.conditions.faults.clone(),
         trouble: scenario.conditions.trouble,
         seed: scenario.conditions.seed,

@@ -3,8 +3,7 @@
 use planner_core::Stop;
 use planner_core::radio::Hearsay;
 
-use crate::fleet::Touches;
-use crate::robot::{Sent, Violation};
+use crate::robot::{Driven, Sent, Touches, Violation};
 
 /// What happened in a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +69,8 @@ pub struct RobotOutcome {
     pub work: u64,
     /// What it sent by radio over the run.
     pub sent: Sent,
+    /// How far it went, if it moves in metres.
+    pub driven: Driven,
     /// Why it stopped; `None` if it did not.
     pub stop: Option<Stop>,
     /// Whether it stands where it started; where bodies exchange roles, where any robot did.

@@ -80,6 +80,20 @@ pub enum ScenarioError {
         second: usize,
         apart: u8,
     },
+    #[error(
+        "--{0} is of bodies that move in metres: choose --motion diff-drive or omni, or leave it out"
+    )]
+    OnlyInMotion(&'static str),
+    #[error(
+        "--{0} counts cells and their steps, which bodies do not make with --motion; leave one of them out"
+    )]
+    NotInMotion(&'static str),
+    #[error("--turn-rate: with --motion omni robots go to any side and never turn; leave it out")]
+    NoTurning,
+    #[error(
+        "--cell: the map says that its cells are {metres} m wide; leave it out (--cell-size makes others)"
+    )]
+    CellOfMap { metres: f64 },
     #[error("--{option} {cell}: outside of the map of {extent} cells")]
     FaultOutside {
         option: &'static str,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use planner_core::explorer::{MAX_CLEARANCE, bodies_touch};
 use planner_core::{Cell, sight};
 
-use super::{Conditions, Preset, ScenarioError};
+use super::{Conditions, Motion, Preset, ScenarioError};
 use crate::planners::PlannerKind;
 use crate::sensor::{ALL_AROUND, Sensor};
 use crate::world::{Reachable, World};
@@ -30,6 +30,9 @@ pub struct Scenario {
     /// Cells that the robots' bodies reach beyond the one of their centre, 0 to 3; see
     /// [`Config::clearance`](planner_core::explorer::Config::clearance).
     pub clearance: u8,
+    /// How bodies move, in metres and seconds; `None`: a cell a tick. Where robots are
+    /// neither solid nor have a clearance, they pass through each other.
+    pub motion: Option<Motion>,
     /// What all worlds share.
     pub conditions: Conditions,
 }
@@ -48,8 +51,17 @@ impl Scenario {
             fov: ALL_AROUND,
             solid: false,
             clearance: 0,
+            motion: None,
             conditions: Conditions::new(0, max_ticks),
         }
+    }
+
+    /// Sets how bodies move, with ticks enough for it.
+    pub fn move_in_metres(&mut self, motion: Option<Motion>) {
+        let ticks = |motion: Option<Motion>| motion.map_or(1, |of| of.ticks_a_step());
+        let conditions = &mut self.conditions;
+        conditions.max_ticks = conditions.max_ticks / ticks(self.motion) * ticks(motion);
+        self.motion = motion;
     }
 
     /// Whether the scenario can be run.
@@ -80,6 +92,7 @@ impl Scenario {
             });
         }
         self.check_body()?;
+        self.check_motion()?;
         let planner = self.planner;
         if let Some((option, _)) = self.conditions.mission.settings().first()
             && !planner.knows_home()
@@ -148,6 +161,34 @@ impl Scenario {
             }
         }
         Ok(())
+    }
+
+    fn check_motion(&self) -> Result<(), ScenarioError> {
+        let Some(motion) = &self.motion else {
+            return Ok(());
+        };
+        motion.check(self.clearance)?;
+        let Conditions {
+            faults,
+            trouble,
+            mission,
+            ..
+        } = &self.conditions;
+        let of_steps = [
+            ("fov", self.fov < ALL_AROUND),
+            ("energy", mission.energy > 0),
+            ("late", !faults.arrivals.is_empty()),
+            ("close", !faults.closures.is_empty()),
+            ("shut", !faults.shut.is_empty()),
+            ("misplaced", trouble.misplaced > 0.0),
+            ("drift", trouble.drift > 0),
+            ("people", trouble.people > 0),
+            ("doors", trouble.doors > 0),
+        ];
+        match of_steps.into_iter().find(|(_, is_used)| *is_used) {
+            Some((option, _)) => Err(ScenarioError::NotInMotion(option)),
+            None => Ok(()),
+        }
     }
 
     /// What its robots can reach: with a body, the cells that it can sweep.

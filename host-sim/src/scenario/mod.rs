@@ -8,6 +8,7 @@ mod faults;
 pub mod grid;
 pub mod heights;
 mod key;
+mod motion;
 mod trouble;
 pub mod voxels;
 
@@ -19,6 +20,7 @@ pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
+pub use motion::{Drive, Motion, MotionArgs};
 pub use trouble::{ErrorKind, Preset, Trouble, TroubleArgs};
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.

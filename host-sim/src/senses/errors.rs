@@ -143,7 +143,7 @@ fn of(lot: Lot, look: Look) -> Lot {
 }
 
 /// The same look, around another place.
-pub(super) fn laid(sighting: &Sighting, place: Cell) -> Sighting {
+pub(crate) fn laid(sighting: &Sighting, place: Cell) -> Sighting {
     let at = sighting.centre();
     let moved = |cell: Cell| Cell::new(cell.x - at.x + place.x, cell.y - at.y + place.y);
     let mut shown = Sighting::new(place);

@@ -14,8 +14,9 @@ use crate::scenario::{Conditions, Faults, Trouble};
 use crate::sensor::{Sensor, View, only};
 
 use bodies::Bodies;
+use errors::Errors;
 pub use errors::Look;
-use errors::{Errors, laid};
+pub(crate) use errors::laid;
 
 /// Where the pose of a robot lies that has lost it: one column off the grid.
 const ASTRAY: i16 = -1;

@@ -4,12 +4,12 @@ use planner_core::radio::Hearsay;
 use serde::Serialize;
 
 use super::Head;
-use crate::fleet::Touches;
 use crate::measured::Measured;
 use crate::planners::PlannerKind;
+use crate::robot::Touches;
 use crate::run::{Outcome, RobotOutcome};
 use crate::scenario::grid::Scenario;
-use crate::scenario::{Conditions, MediumKind, Reach};
+use crate::scenario::{Conditions, MediumKind, Motion, Reach};
 
 /// What a run came to, in the field names of the JSON summary.
 #[derive(Clone, Debug, Serialize)]
@@ -44,6 +44,9 @@ pub struct Summary {
     /// What came of their bodies, if they are wider than a cell.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub body: Option<BodySummary>,
+    /// What came of bodies that move in metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<MotionSummary>,
     /// Robot by robot.
     pub robots: Vec<RobotSummary>,
     /// What the planners took, if they ran on chips.
@@ -62,6 +65,24 @@ pub struct BodySummary {
     pub narrow_cells: u32,
 }
 
+/// What came of bodies that move in metres and seconds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct MotionSummary {
+    /// How they move.
+    #[serde(flatten)]
+    pub motion: Motion,
+    /// Seconds until all was seen.
+    pub seconds_to_seen: Option<f64>,
+    /// Seconds until every living robot had stopped.
+    pub seconds_to_stopped: Option<f64>,
+    /// The length of all ways.
+    pub metres: f64,
+    /// Full turns to either side of all robots.
+    pub turns: f64,
+    /// How often one ran into something.
+    pub touches: Touches,
+}
+
 /// What one robot came to.
 #[derive(Clone, Debug, Serialize)]
 pub struct RobotSummary {
@@ -69,6 +90,12 @@ pub struct RobotSummary {
     pub start: (i16, i16),
     /// Cells walked.
     pub steps: u32,
+    /// The length of its way, if it moves in metres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub metres: Option<f64>,
+    /// The full turns that it made to either side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub turns: Option<f64>,
     /// Ticks in which it had not stopped.
     pub active_ticks: u32,
     /// Those of them in which it waited: it neither tried a step nor turned to look.
@@ -148,22 +175,48 @@ impl Summary {
                     .max()
                     .unwrap_or(0),
             }),
+            motion: scenario
+                .motion
+                .map(|motion| MotionSummary::new(motion, outcome)),
             robots: scenario
                 .starts
                 .iter()
                 .zip(&outcome.robots)
-                .map(|(start, robot)| RobotSummary::new((start.x, start.y), robot))
+                .map(|(start, robot)| {
+                    RobotSummary::new((start.x, start.y), robot, scenario.motion.is_some())
+                })
                 .collect(),
             firmware: None,
         }
     }
 }
 
+impl MotionSummary {
+    fn new(motion: Motion, outcome: &Outcome) -> Self {
+        let seconds = |ticks: u32| f64::from(ticks) * f64::from(motion.tick_ms) / 1e3;
+        let sum = |of: fn(&RobotOutcome) -> u32| outcome.robots.iter().map(of).sum::<u32>();
+        Self {
+            motion,
+            seconds_to_seen: outcome.ticks_to_seen.map(seconds),
+            seconds_to_stopped: outcome.ticks_to_stopped.map(seconds),
+            metres: f64::from(sum(|robot| robot.driven.millimetres)) / 1e3,
+            turns: f64::from(sum(|robot| robot.driven.milliturns)) / 1e3,
+            touches: Touches {
+                walls: sum(|robot| robot.driven.touches.walls),
+                bodies: sum(|robot| robot.driven.touches.bodies),
+            },
+        }
+    }
+}
+
 impl RobotSummary {
-    fn new(start: (i16, i16), robot: &RobotOutcome) -> Self {
+    fn new(start: (i16, i16), robot: &RobotOutcome, in_metres: bool) -> Self {
+        let thousandths = |of: u32| in_metres.then_some(f64::from(of) / 1e3);
         Self {
             start,
             steps: robot.steps,
+            metres: thousandths(robot.driven.millimetres),
+            turns: thousandths(robot.driven.milliturns),
             active_ticks: robot.active_ticks,
             waited_ticks: robot.waited_ticks,
             blocked_steps: robot.blocked_steps,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::scenario::Conditions;
 
-pub use grid::{BodySummary, RobotSummary, Summary};
+pub use grid::{BodySummary, MotionSummary, RobotSummary, Summary};
 
 /// What every summary says of a run, in any kind of world.
 #[derive(Clone, Debug, Serialize)]

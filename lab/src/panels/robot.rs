@@ -144,6 +144,7 @@ fn words(deed: Deed) -> String {
         Deed::Exchanged(way) => format!("exchanged roles with the robot in the {}", name(way)),
         Deed::Yielded => "gave its role away".into(),
         Deed::Waited => "waited".into(),
+        Deed::Driving => "is on its way".into(),
         Deed::Looked(way) => format!("looks {}", name(way)),
         Deed::Stopped(stop) => format!("stopped: {stop}"),
     }

@@ -10,8 +10,8 @@ use super::check::Checked;
 use super::{Grid, Trace};
 use crate::planners::PlannerKind;
 use crate::record::{self, TraceError};
-use crate::scenario::Conditions;
 use crate::scenario::grid::Scenario;
+use crate::scenario::{Conditions, Motion};
 use crate::sensor::ALL_AROUND;
 use crate::world::World;
 
@@ -26,6 +26,9 @@ struct Header {
     /// Absent where robots are no wider than a cell.
     #[serde(default, skip_serializing_if = "is_none")]
     clearance: u8,
+    /// Absent where robots make a step a tick.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    motion: Option<Motion>,
     starts: Vec<(i16, i16)>,
     #[serde(flatten)]
     conditions: Conditions,
@@ -82,6 +85,7 @@ impl Header {
             fov: scenario.fov,
             solid: scenario.solid,
             clearance: scenario.clearance,
+            motion: scenario.motion,
             starts: scenario
                 .starts
                 .iter()
@@ -105,6 +109,7 @@ impl Header {
             fov: self.fov,
             solid: self.solid,
             clearance: self.clearance,
+            motion: self.motion,
             conditions: self.conditions,
         };
         scenario.check()?;

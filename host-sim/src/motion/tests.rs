@@ -183,7 +183,7 @@ fn bodies_on_one_way_hold_each_other_and_do_not_touch() {
                 next: Cell::new(here.x + step, 0),
                 waypoint: Some(Cell::new(end, 0)),
             };
-            *held = matches!(drivers.steer(robot, aim, is_free), Steered::Held(_));
+            *held |= matches!(drivers.steer(robot, aim, is_free), Steered::Held(_));
         }
         drivers.drive(tick, is_free);
     }

@@ -149,11 +149,11 @@ class Navigator:
         if distance <= 0.08 and abs(off) < 0.2:
             self.end(SUCCEEDED)
             return 0.0, 0.0
-        ahead = min(1.0, distance) if abs(off) < 0.35 and distance > 0.08 else 0.0
+        ahead = min(0.8, distance) if abs(off) < 0.35 and distance > 0.08 else 0.0
         if ahead > 0.0 and room < CLOSE:
             ahead, self.stopped = 0.0, self.stopped + 1
             if self.stopped > PATIENCE:
                 self.end(ABORTED)
         else:
             ahead = min(ahead, max(room - CLOSE, 0.1))
-        return ahead, max(-2.0, min(2.0, 2 * off))
+        return ahead, max(-1.5, min(1.5, 2 * off))

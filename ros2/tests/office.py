@@ -43,7 +43,7 @@ RADIUS = 0.2
 STARTS = [(2.25, 5.0, 0.0), (8.0, 4.75, 1.57), (14.0, 5.25, 3.14)]
 KILLED = 2
 KILLED_AFTER = 10.0
-LIMIT = 120.0
+LIMIT = 240.0
 # How far the scanner of some robots is turned.
 LEFT = 0.5
 
@@ -84,8 +84,8 @@ def world():
     robot = {
         "kinematics": {"name": "diff", "noise": True, "alpha": [0.03, 0, 0, 0.03, 0, 0]},
         "shape": {"name": "circle", "radius": RADIUS},
-        "vel_max": [1.2, 2.5],
-        "vel_min": [-1.2, -2.5],
+        "vel_max": [1.0, 2.0],
+        "vel_min": [-1.0, -2.0],
         "behavior": None,
         "sensors": [
             {
@@ -154,28 +154,45 @@ class Odometry:
 
 
 class Nav2(Odometry):
-    """As explore_lite has it: a map to see by, drawn of the scans, and goals to Nav2."""
+    """Poses as odometry, goals to Nav2."""
 
-    parameters = {
-        "pose_source": "odom",
-        "costmap_topic": "map",
-        "drive": "nav2",
-        "service_mapping": "cyclone",
-    }
-    # Metres of a cell of the map, and by how much walls are drawn behind what was hit.
-    FINE, BEHIND = 0.125, 0.04
+    parameters = {"pose_source": "odom", "drive": "nav2", "service_mapping": "cyclone"}
 
     def __init__(self, robot):
         super().__init__(robot)
         self.navigator = Navigator(robot.participant, robot.space)
         self.pose, self.room = None, math.inf
+
+    def see(self, angles, ranges):
+        angles, ranges = angles[np.isfinite(ranges)], ranges[np.isfinite(ranges)]
+        x, y = ranges * np.cos(angles), ranges * np.sin(angles)
+        ahead = x[(x > 0) & (np.abs(y) < RADIUS + 0.1)]
+        self.room = ahead.min(initial=math.inf)
+
+    def tell(self, x, y, yaw, stamp):
+        super().tell(x, y, yaw, stamp)
+        self.pose = x, y, yaw
+
+    def orders(self):
+        return [self.navigator.order(self.pose, self.room)] if self.pose else []
+
+
+class Nav2WithMap(Nav2):
+    """As explore_lite has it: also a map to see by, drawn of the scans."""
+
+    parameters = Nav2.parameters | {"costmap_topic": "map"}
+    # Metres of a cell of the map, and by how much walls are drawn behind what was hit.
+    FINE, BEHIND = 0.125, 0.04
+
+    def __init__(self, robot):
+        super().__init__(robot)
         self.map = robot.writer("map", m.OccupancyGrid, LATCHED)
         rows, columns = (round(it * LETTER / self.FINE) for it in plan().shape)
         self.votes = np.zeros((rows, columns), dtype=int)
         self.scans = 0
 
-    def draw(self, angles, ranges):
-        """Draws a scan into the map, and shows it twice a second."""
+    def see(self, angles, ranges):
+        super().see(angles, ranges)
         x, y, yaw = self.pose
         angles = angles + yaw
 
@@ -192,27 +209,13 @@ class Nav2(Odometry):
         vote(ranges[hits] + self.BEHIND, hits, 3)
         self.votes.clip(-20, 20, out=self.votes)
         self.scans += 1
+        # Shown twice a second.
         if self.scans % 5 == 1:
             height, width = self.votes.shape
             drawn = np.where(self.votes == 0, -1, np.where(self.votes > 0, 100, 0))
             info = m.MapMetaData(m.Time(), self.FINE, width, height, m.Pose())
             header, cells = m.Header(m.Time(), "map"), drawn.ravel().tolist()
             self.map.write(m.OccupancyGrid(header, info, cells))
-
-    def see(self, angles, ranges):
-        if self.pose:
-            self.draw(angles, ranges)
-        angles, ranges = angles[np.isfinite(ranges)], ranges[np.isfinite(ranges)]
-        x, y = ranges * np.cos(angles), ranges * np.sin(angles)
-        ahead = x[(x > 0) & (np.abs(y) < RADIUS + 0.1)]
-        self.room = ahead.min(initial=math.inf)
-
-    def tell(self, x, y, yaw, stamp):
-        super().tell(x, y, yaw, stamp)
-        self.pose = x, y, yaw
-
-    def orders(self):
-        return [self.navigator.order(self.pose, self.room)] if self.pose else []
 
 
 class Transforms(Odometry):
@@ -283,8 +286,8 @@ class Robot:
             "origin_y": -MARGIN,
             "robot_radius": RADIUS + 0.05,
             "scan_error": 0.06,
-            "max_speed": 1.0,
-            "max_turn": 2.0,
+            "max_speed": 0.8,
+            "max_turn": 1.5,
             "progress_timeout": 5.0,
             "mcap": self.recording,
             "width": int((of.shape[1] * LETTER + 2 * MARGIN) / CELL),
@@ -481,7 +484,10 @@ def main():
     options.add_argument("program", type=Path)
     options.add_argument("--runs", type=int, default=1)
     options.add_argument("--first", type=int, default=1)
+    options.add_argument("--map", action="store_true", help="the first robot sees by a map")
     options = options.parse_args()
+    if options.map:
+        BODIES[0] = Nav2WithMap
     with tempfile.TemporaryDirectory() as folder:
         for number in range(options.first, options.first + options.runs):
             run(options.program.resolve(), number, Path(folder))

@@ -22,6 +22,7 @@ pub mod experiments;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod files;
 pub mod fleet;
+mod limits;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod live;
 pub mod measured;

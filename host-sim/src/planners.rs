@@ -95,6 +95,11 @@ impl PlannerKind {
         self == Self::Explorer
     }
 
+    /// Whether it can be told what to keep out of.
+    pub fn keeps_out(self) -> bool {
+        self == Self::Explorer
+    }
+
     /// How a planner decides that can run on a chip, and runs in the same way on
     /// the host. `None`: this one has a view of all robots, which no chip has.
     pub fn on_chip(self, setup: Setup) -> Option<PlannerConfig> {

@@ -282,7 +282,9 @@ fn cell(text: &str) -> Option<Cell> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use host_sim::scenario::{AirFaults, ErrorKind, Faults, Mission, Preset, Reach, Trouble};
+    use host_sim::scenario::{
+        AirFaults, ErrorKind, Faults, Limits, Mission, Preset, Reach, Trouble,
+    };
     use planner_core::Extent;
 
     fn unusual() -> Setup {
@@ -341,6 +343,10 @@ mod tests {
                 mission: Mission {
                     come_home: true,
                     energy: 70,
+                },
+                limits: Limits {
+                    keep_out: vec!["1,2:3,4".parse().unwrap(), "5,5:7,5:5,7".parse().unwrap()],
+                    only: vec!["0,0:9,9".parse().unwrap()],
                 },
             },
         }

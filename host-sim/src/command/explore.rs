@@ -201,6 +201,12 @@ impl Explore {
         self.motion.is_given()
     }
 
+    /// The option that names cells to keep out of, if one is given.
+    #[cfg(unix)]
+    pub(super) fn limit(&self) -> Option<&'static str> {
+        self.conditions.limit()
+    }
+
     fn read_options(&self) -> ReadOptions {
         let scale = match (self.pixels_per_cell, self.cell_size) {
             (Some(pixels), _) => Scale::Pixels(pixels),

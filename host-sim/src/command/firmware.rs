@@ -31,6 +31,11 @@ impl Firmware {
                 "--motion: emulated chips make unit steps; explore moves bodies in metres".into(),
             );
         }
+        if let Some(option) = self.explore.limit() {
+            return Err(
+                format!("--{option}: the image is told of no such cells; explore is").into(),
+            );
+        }
         let image = self.image.unwrap_or_else(|| self.machine.image());
         let swarm = Swarm::new(self.machine, image);
         self.explore.run_by(|scenario, options| {

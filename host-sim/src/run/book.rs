@@ -169,7 +169,7 @@ impl Book {
             noted.cells_known = robot.planner.map().known_cells();
             noted.cells_unheard = unheard[usize::from(robot.id.0)];
             noted.cells_narrow = robot.planner.narrow_cells();
-            let own = || scenario.world.reachable_by(&[start], scenario.clearance);
+            let own = || scenario.reachable_from(&[start]);
             let wrong = wrong(&scenario.world, &self.reachable, robot, own);
             noted.cells_missed = wrong.missed;
             noted.cells_unnamed = wrong.unnamed;

@@ -138,6 +138,7 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
     let sensor_model = scenario.conditions.preset.model();
     let (host, kind, clearance) = (host.clone(), scenario.planner, scenario.clearance);
     let extent = scenario.world.extent();
+    let kept_out = scenario.conditions.limits.cells(extent);
     // Robots that work by marks share them, and meet where the first one starts.
     let marks = match (kind, scenario.starts.first()) {
         (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
@@ -157,7 +158,12 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
             clearance,
             mission,
         };
-        host.planner(kind, setup)
+        let mut planner = host.planner(kind, setup);
+        if kept_out.is_some() {
+            let kept_out = planner.keep_out(kept_out);
+            kept_out.expect("the planner can, and its start was checked");
+        }
+        planner
     });
     let medium = medium::build(&scenario.conditions, scenario.world.clone());
     Fleet::new(sensor, medium, rules, build, &scenario.starts)

@@ -5,8 +5,8 @@ use clap::{Args, Command, FromArgMatches};
 use planner_core::radio::{Key, LinkConfig};
 
 use super::{
-    AirFaults, CellSpan, Conditions, Event, Faults, Forger, MediumKind, MissionArgs, Partition,
-    Preset, Reach, RobotSpan, ScenarioError, TroubleArgs, key,
+    AirFaults, CellSpan, Conditions, Event, Faults, Forger, Limits, LimitsArgs, MediumKind,
+    MissionArgs, Partition, Preset, Reach, RobotSpan, ScenarioError, TroubleArgs, key,
 };
 
 /// The options of a robot's radio.
@@ -121,6 +121,8 @@ pub struct ConditionsArgs {
     #[command(flatten)]
     mission: MissionArgs,
     #[command(flatten)]
+    limits: LimitsArgs,
+    #[command(flatten)]
     trouble: TroubleArgs,
 }
 
@@ -128,6 +130,13 @@ impl ConditionsArgs {
     /// The seed, if it is given.
     pub fn seed(&self) -> Option<u64> {
         self.seed
+    }
+
+    /// The option that names cells to keep out of, if one is given.
+    pub fn limit(&self) -> Option<&'static str> {
+        let mut limits = Limits::default();
+        self.limits.clone().over(&mut limits);
+        limits.areas().next().map(|(option, _)| option)
     }
 
     /// Whether frames are to be signed.
@@ -153,6 +162,7 @@ impl ConditionsArgs {
             trouble,
             preset,
             mission,
+            limits,
         } = conditions;
         let AirFaults {
             reach,
@@ -198,6 +208,7 @@ impl ConditionsArgs {
         *trouble = self.trouble.over(*trouble);
         replace(preset, self.preset);
         *mission = self.mission.over(*mission);
+        self.limits.over(limits);
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
             _ => Ok(()),
@@ -243,6 +254,7 @@ impl Conditions {
             trouble,
             preset,
             mission,
+            limits,
         } = self;
         let AirFaults {
             reach,
@@ -301,6 +313,7 @@ impl Conditions {
         settings.extend(all("sensor-fails", sensor_failures));
         settings.extend(all("pose-lost", lost_poses));
         settings.extend(mission.settings());
+        settings.extend(limits.settings());
         settings.extend(trouble.settings(&usual.trouble));
         settings
     }

@@ -49,6 +49,16 @@ pub enum ScenarioError {
         option: &'static str,
         planner: PlannerKind,
     },
+    #[error("--{option}: planner {planner} keeps out of nothing; the explorer does")]
+    GoesAnywhere {
+        option: &'static str,
+        planner: PlannerKind,
+    },
+    #[error(
+        "robot {robot} starts at {start}, in cells that robots are to keep out of, or touches \
+         them there; start it elsewhere (--start X,Y)"
+    )]
+    StartKeptOut { robot: usize, start: Cell },
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start { robot: usize, start: Cell },
     #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]

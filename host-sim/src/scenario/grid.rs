@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use planner_core::explorer::{MAX_CLEARANCE, bodies_touch};
+use planner_core::explorer::{MAX_CLEARANCE, bodies_touch, body_cells};
 use planner_core::{Cell, sight};
 
 use super::{Conditions, Motion, Preset, ScenarioError};
@@ -100,6 +100,7 @@ impl Scenario {
             return Err(ScenarioError::NeverHome { option, planner });
         }
         self.check_fault_cells()?;
+        self.check_limits()?;
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
                 return Err(ScenarioError::Start { robot, start });
@@ -172,11 +173,14 @@ impl Scenario {
             faults,
             trouble,
             mission,
+            limits,
             ..
         } = &self.conditions;
         let of_steps = [
             ("fov", self.fov < ALL_AROUND),
             ("energy", mission.energy > 0),
+            ("keep-out", !limits.keep_out.is_empty()),
+            ("only", !limits.only.is_empty()),
             ("late", !faults.arrivals.is_empty()),
             ("close", !faults.closures.is_empty()),
             ("shut", !faults.shut.is_empty()),
@@ -191,9 +195,48 @@ impl Scenario {
         }
     }
 
+    fn check_limits(&self) -> Result<(), ScenarioError> {
+        let limits = &self.conditions.limits;
+        let (planner, extent) = (self.planner, self.world.extent());
+        let Some((option, _)) = limits.areas().next() else {
+            return Ok(());
+        };
+        if !planner.keeps_out() {
+            return Err(ScenarioError::GoesAnywhere { option, planner });
+        }
+        for (option, area) in limits.areas() {
+            if let Some(&cell) = area.corners().iter().find(|cell| !extent.contains(**cell)) {
+                return Err(ScenarioError::FaultOutside {
+                    option,
+                    cell,
+                    extent,
+                });
+            }
+        }
+        let is_kept_out =
+            |start: &Cell| body_cells(self.clearance, *start).any(|cell| limits.keeps_out(cell));
+        match self.starts.iter().position(is_kept_out) {
+            Some(robot) => Err(ScenarioError::StartKeptOut {
+                robot,
+                start: self.starts[robot],
+            }),
+            None => Ok(()),
+        }
+    }
+
     /// What its robots can reach: with a body, the cells that it can sweep.
     pub fn reachable(&self) -> Reachable {
-        self.world.reachable_by(&self.starts, self.clearance)
+        self.reachable_from(&self.starts)
+    }
+
+    /// As [`reachable`](Self::reachable), from other cells.
+    pub fn reachable_from(&self, from: &[Cell]) -> Reachable {
+        let limits = &self.conditions.limits;
+        if limits.is_none() {
+            return self.world.reachable_by(from, self.clearance);
+        }
+        let open = self.world.without(|cell| limits.keeps_out(cell));
+        open.reachable_by(from, self.clearance)
     }
 
     fn check_fault_cells(&self) -> Result<(), ScenarioError> {

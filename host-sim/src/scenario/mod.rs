@@ -15,6 +15,7 @@ pub mod voxels;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use serde::{Deserialize, Serialize};
 
+pub use crate::limits::{Area, Limits, LimitsArgs};
 pub use crate::mission::{Mission, MissionArgs};
 pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
@@ -63,6 +64,9 @@ pub struct Conditions {
     /// What robots are sent out with.
     #[serde(default, skip_serializing_if = "Mission::is_none")]
     pub mission: Mission,
+    /// What robots keep out of.
+    #[serde(default, skip_serializing_if = "Limits::is_none")]
+    pub limits: Limits,
 }
 
 fn is_usual(preset: &Preset) -> bool {
@@ -90,6 +94,7 @@ impl Conditions {
             trouble: Trouble::default(),
             preset: Preset::default(),
             mission: Mission::default(),
+            limits: Limits::default(),
         }
     }
 
@@ -182,6 +187,7 @@ impl Conditions {
         let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
         let mut settings = self.trouble.settings(&Trouble::default());
         settings.extend(self.mission.settings());
+        settings.extend(self.limits.settings());
         let named = settings.iter().map(|(option, _)| *option);
         match used.map(|(option, _)| option).chain(named).next() {
             Some(option) => Err(ScenarioError::NotHere { option, world }),

@@ -69,6 +69,15 @@ impl World {
         self.is_free(cell) && body_cells(clearance, cell).all(|cell| self.is_free(cell))
     }
 
+    /// This world with more obstacles.
+    pub(crate) fn without(&self, blocked: impl Fn(Cell) -> bool) -> Self {
+        let is_blocked = |cell| !self.is_free(cell) || blocked(cell);
+        Self {
+            grid: Grid::from_fn(self.extent(), is_blocked),
+            ..self.clone()
+        }
+    }
+
     /// The cells that bodies sweep that start from `from`. A start without room adds nothing.
     pub fn reachable_by(&self, from: &[Cell], clearance: u8) -> Reachable {
         if clearance == 0 {

@@ -104,12 +104,15 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         }
         if let Some(plan) = &self.role.plan
             && candidate.length > plan.remaining
-            && !(plan.path.is_empty() && candidate.goal == plan.goal)
         {
-            if self.role.changes >= self.config.tokens {
+            let is_rest = plan.path.is_empty() && candidate.goal == plan.goal;
+            if is_rest {
+                self.role.measure_rest(candidate.length);
+            } else if self.role.changes >= self.config.tokens {
                 return false;
+            } else {
+                self.role.changes += 1;
             }
-            self.role.changes += 1;
         }
         let mut path = candidate.path;
         path.truncate(self.config.way.max(1));

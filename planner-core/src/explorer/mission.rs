@@ -139,15 +139,17 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// A step of the way, or what it takes to find one.
     fn walk(&mut self, errand: Errand) -> Action {
         if self.next_step().is_none() {
-            // In another body it was a way.
-            let was_way = self.role.plan.take().is_some_and(|of| !of.path.is_empty());
-            self.role.lost = self.role.lost.saturating_add(u8::from(was_way));
+            if self.role.plan.is_some_and(|plan| !plan.path.is_empty()) {
+                // In another body it was a way.
+                self.role.lose_plan();
+            }
             match self.search_way(errand.to) {
                 // Rather than a way round that it cannot make, it tries again.
                 Outcome::Found(way) if self.budget.lasts_for(way.length) || !self.may_open() => {
                     self.take(way);
                 }
                 Outcome::Found(_) | Outcome::Lost => {
+                    self.role.plan = None;
                     if let Some(why_not) = self.why_no_way(errand.to) {
                         self.role.errand = Maybe::Nothing;
                         return self.stop(why_not);
@@ -225,6 +227,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     }
 
     fn take(&mut self, way: Candidate) {
+        if self.role.plan.is_some() {
+            self.role.measure_rest(way.length);
+        }
         let mut path = way.path;
         path.truncate(self.config.way.max(1));
         self.role.plan = Some(Plan {

@@ -482,7 +482,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let here = self.around.position;
         let goal = self.role.goal();
         if goal.is_some_and(|goal| goal != here || !self.around.is_goal(here)) {
-            self.role.lost = self.role.lost.saturating_add(1);
+            self.role.lose_plan();
         }
         self.role.plan = None;
     }

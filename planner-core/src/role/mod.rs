@@ -59,7 +59,8 @@ pub struct Role {
     pub(crate) since: u8,
     /// Plans that were made longer since the role last learnt anything.
     pub(crate) changes: u8,
-    /// Plans that were worthless in the body that it got by an exchange, see [`exchange`].
+    /// Plans that were worthless, or longer, in the body that it got by an exchange, see
+    /// [`exchange`].
     pub(crate) lost: u8,
     /// Whether it has reached its goal and has not decided since.
     pub(crate) has_arrived: bool,
@@ -132,6 +133,20 @@ impl Role {
             self.has_arrived = plan.remaining == 0;
         }
         self.since = self.since.saturating_add(1);
+    }
+
+    /// Drops a plan that is worthless in this body.
+    pub(crate) fn lose_plan(&mut self) {
+        self.lost = self.lost.saturating_add(1);
+        self.plan = None;
+    }
+
+    /// The rest of the way at hand takes so many steps: if they are more than were left, the
+    /// plan was worthless in this body.
+    pub(crate) fn measure_rest(&mut self, length: u32) {
+        if length > self.remaining() {
+            self.lost = self.lost.saturating_add(1);
+        }
     }
 
     fn is_pushed_back(&mut self, from: Cell, to: Cell) {

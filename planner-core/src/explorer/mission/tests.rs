@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::cell::Extent;
 use crate::explorer::Config;
-use crate::explorer::tests::scene::{self, Scene, run};
+use crate::explorer::tests::scene::{self, Ghost, Scene, Trouble, run};
 use crate::explorer::tests::soak;
 use crate::planner::{Inspect, Planner};
 use crate::robot::{Motion, RobotId};
@@ -264,4 +264,59 @@ proptest! {
             prop_assert!(is_home || !must_be_home, "at {}: {}", robot.around.position, stop);
         }
     }
+}
+
+/// A stopped robot stands on the way round a cell that refuses, and does not know of it:
+/// by exchanges of bodies the role went to and fro.
+#[test]
+fn a_role_whose_way_is_longer_in_one_body_than_in_the_other_comes_home() {
+    let rows = "\
+        ..............#....\
+        ......####.........\
+        ..#..#....#........\
+        ...................\
+        ......#............\
+        .....#..#...#.#....\
+        ...................\
+        ....##...#...#.....\
+        .#.................\
+        ...................\
+        ##.................";
+    let scene = Scene {
+        extent: Extent::new(19, 11),
+        walls: rows.bytes().map(|cell| cell == b'#').collect(),
+        start: [(7, 3), (7, 6), (8, 0)]
+            .map(|(x, y)| Cell::new(x, y))
+            .into(),
+        radius: 1,
+        config: Config {
+            slice: 6000,
+            way: 8,
+            come_home: true,
+            ..Config::new()
+        },
+        sync: 0,
+        refusals: 0,
+        solid: true,
+        trouble: Trouble {
+            ghosts: [Ghost {
+                id: 0,
+                aim: 0,
+                period: 1,
+                silence: u32::MAX,
+            }]
+            .into(),
+            refusing: [(Cell::new(9, 0), true)].into(),
+            view: 180,
+            astray: [(1, 161, 35)].into(),
+            ..Trouble::default()
+        },
+        seed: 3675672467904345921,
+        energy: None,
+    };
+    let ended = run(&scene, 10_000);
+    let role = |id| ended.robots.iter().find(|robot| robot.role.rank == id);
+    let walker = role(RobotId(2)).unwrap();
+    assert_eq!(walker.around.position, walker.role.home);
+    assert!(ended.stops.iter().all(Option::is_some));
 }

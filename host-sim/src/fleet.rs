@@ -212,6 +212,11 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
                     false => robot.planner.observe(&laid(&sighting, believed)),
                 };
             }
+            if believed == robot.position {
+                for &(at, free, blocked) in &*self.senses.far(index, robot.position) {
+                    robot.planner.observe_far(at, free, blocked);
+                }
+            }
             robot.has_exchanged = false;
             robot.sent = Sent::default();
         }

@@ -80,6 +80,19 @@ impl PlannerKind {
         }
     }
 
+    /// Whether it takes in what lies beyond [`MAX_RADIUS`](planner_core::sight::MAX_RADIUS).
+    pub fn sees_far(self) -> bool {
+        match self {
+            Self::Explorer
+            | Self::Closest
+            | Self::Greedy
+            | Self::MinPos
+            | Self::MinPosStrong
+            | Self::Utility => true,
+            Self::LocalFrontiers | Self::LocalFrontiersSecondChance | Self::Bmilrv => false,
+        }
+    }
+
     /// Whether it can take its sensor for one that errs.
     pub fn weighs_looks(self) -> bool {
         self == Self::Explorer

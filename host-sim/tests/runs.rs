@@ -570,3 +570,38 @@ fn robots_come_home_with_their_energy_and_go_on_with_more() {
     }
     assert!(later.seen_cells > outcome.seen_cells);
 }
+
+#[test]
+fn a_sensor_that_reaches_farther_shows_more_and_all_is_seen() {
+    for planner in [PlannerKind::Explorer, PlannerKind::Utility] {
+        let ticks = [15, 31].map(|range| {
+            let world = Arc::new(generate(Family::Cave, 96, 96, 5).unwrap());
+            let starts = world.place(1, &Starts::Random(5), false).unwrap();
+            let mut scenario = Scenario::new(world, starts, planner);
+            scenario.range = range;
+            let (outcome, trace) = run(&scenario);
+            assert!(outcome.is_complete(), "{planner}");
+            let mut shown = draw::Replay::new(&trace);
+            while shown.tick() {}
+            assert_eq!(shown.seen_cells(), outcome.seen_cells);
+            outcome.ticks_to_seen.unwrap()
+        });
+        assert!(ticks[1] < ticks[0], "{planner}: {ticks:?}");
+    }
+}
+
+#[test]
+fn a_long_range_is_refused_where_it_would_not_count() {
+    let refused = |change: &dyn Fn(&mut Scenario)| {
+        let mut scenario = scenario(PlannerKind::Explorer, Family::Cave, 3);
+        scenario.range = 16;
+        change(&mut scenario);
+        scenario.check().unwrap_err().to_string()
+    };
+    let far = refused(&|scenario| scenario.range = 32);
+    assert_eq!(far, "--range 32: expected 1 to 31 cells");
+    let errs = refused(&|scenario| scenario.conditions.trouble.false_walls = 0.1);
+    assert_eq!(errs, "--range 16: expected 1 to 15 cells where looks err");
+    let near = refused(&|scenario| scenario.planner = PlannerKind::Bmilrv);
+    assert!(near.contains("takes in at most 15 cells"), "{near}");
+}

@@ -7,7 +7,7 @@ use crate::map::{CellSet, Learnt, Map};
 use crate::radio::{Frame, FrameError, Heard, Hearsay, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::role::Role;
-use crate::sight::Sighting;
+use crate::sight::{LongSighting, Sighting};
 use crate::tile::{TileIndex, TileSet};
 
 /// A planner of one robot on a map of at most `TW`×`TH` tiles.
@@ -100,6 +100,27 @@ use crate::tile::{TileIndex, TileSet};
 pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in what the robot sees from where it stands.
     fn observe(&mut self, sighting: &Sighting) -> Learnt;
+
+    /// Takes in what the robot sees of a tile beyond
+    /// [`MAX_RADIUS`](crate::sight::MAX_RADIUS): cells free and blocked, a bit each. Only
+    /// what nobody has seen counts: one look does not speak against others from so far.
+    /// Call it after [`observe`](Self::observe). A planner that knows only what is near
+    /// ignores it. Work: the tile and its four neighbours.
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        let _ = (at, free, blocked);
+        Learnt::default()
+    }
+
+    /// As [`observe`](Self::observe) for a sensor that reaches farther, with
+    /// [`observe_far`](Self::observe_far) of what is beyond. Work: that of `observe`, and of
+    /// at most 81 tiles.
+    fn observe_long(&mut self, sighting: &LongSighting) -> Learnt {
+        let mut learnt = self.observe(&sighting.near());
+        for (at, free, blocked) in sighting.far_tiles() {
+            learnt += self.observe_far(at, free, blocked);
+        }
+        learnt
+    }
 
     /// Decides. Call it once per tick.
     fn tick(&mut self) -> Action;

@@ -76,6 +76,21 @@ impl TileIndex {
         }
     }
 
+    /// The cells at most so many cells from `centre` each way.
+    pub(crate) fn near(self, centre: Cell, range: u8) -> u64 {
+        let side = |from: u8, centre: i16| {
+            let from = i32::from(centre) - i32::from(range) - 8 * i32::from(from);
+            let to = from + 2 * i32::from(range);
+            let above = |bit: i32| 0xffu32.checked_shl(bit.clamp(0, 8) as u32).unwrap_or(0);
+            (above(from) & !above(to + 1) & 0xff) as u8
+        };
+        let (columns, rows) = (side(self.x, centre.x), side(self.y, centre.y));
+        (0..8).fold(0, |cells, row| {
+            let row_cells = if rows >> row & 1 == 1 { columns } else { 0 };
+            cells | u64::from(row_cells) << (8 * row)
+        })
+    }
+
     /// Its cells that lie on the edge of the extent.
     pub(crate) fn edge(self, extent: Extent) -> u64 {
         let (x, y) = (usize::from(self.x), usize::from(self.y));

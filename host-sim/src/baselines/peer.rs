@@ -1,11 +1,12 @@
 //! A robot that walks to the frontier that a rule assigns to it.
 
-use planner_core::ExtentError;
+use planner_core::map::Level;
 use planner_core::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use planner_core::sight::line_of_sight;
+use planner_core::tile::{TileIndex, bits};
 use planner_core::{
-    Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, Map, Motion, Persist,
-    Planner, RobotId, Sighting, Status, Stop, TileSet,
+    Action, Activity, Cell, Contact, Errands, Extent, ExtentError, Inspect, Learnt, Map, Motion,
+    Persist, Planner, RobotId, Sighting, Status, Stop, TileSet,
 };
 
 use super::waves::{Spot, Waves};
@@ -197,6 +198,18 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
         self.map.stand(self.position);
         let learnt = self.map.observe(sighting);
         self.link.look(sighting);
+        self.link.announce(&mut self.map);
+        self.learn(learnt)
+    }
+
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        if self.is_astray {
+            return Learnt::default();
+        }
+        let seen = bits(free | blocked).map(|bit| at.cell(bit).distance_squared(self.position));
+        let farthest = seen.max().unwrap_or(0).isqrt();
+        self.reach = self.reach.max(farthest as u8);
+        let learnt = self.map.observe_far(at, free, blocked, Level::Wall);
         self.link.announce(&mut self.map);
         self.learn(learnt)
     }

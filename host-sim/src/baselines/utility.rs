@@ -47,7 +47,7 @@ impl Rule for Utility {
 }
 
 fn unknown_in_sight(waves: &Waves, from: Cell, reach: u8) -> u32 {
-    let seen = sight::look(from, reach, |cell| waves.is_obstacle(cell));
+    let seen = sight::look_far(from, reach, |cell| waves.is_obstacle(cell));
     seen.free_cells()
         .filter(|&cell| waves.is_unknown(cell))
         .count() as u32

@@ -6,6 +6,7 @@ use std::rc::Rc;
 use std::time::Duration;
 
 use bridge::{Cost, SurveyorConfig};
+use planner_core::sight::MAX_RADIUS;
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
 use planner_core::{AnyPlanner, Extent, RobotId};
 
@@ -85,6 +86,10 @@ impl Swarm {
         scenario: &Scenario,
         options: Options<'_>,
     ) -> Result<(Outcome, Option<Trace>), ScenarioError> {
+        if scenario.range > MAX_RADIUS {
+            let expected = format!("1 to {MAX_RADIUS} cells where a chip decides");
+            return Err(ScenarioError::setting("range", scenario.range, expected));
+        }
         run::run_on(self, scenario, options)
     }
 

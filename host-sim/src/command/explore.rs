@@ -44,8 +44,8 @@ pub(crate) struct Explore {
     /// digits in a text map, else center.
     #[arg(long, value_name = "WHERE")]
     start: Vec<Start>,
-    /// Sensor range in cells, 1 to 15.
-    #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=15))]
+    /// Sensor range in cells, 1 to 31.
+    #[arg(long, value_name = "R", default_value_t = 5, value_parser = clap::value_parser!(u8).range(1..=31))]
     range: u8,
     /// The sensor's field of view around the robot's heading in degrees, 1 to 360;
     /// below 360, for the explorer alone, robots turn to look around.

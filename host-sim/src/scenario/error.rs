@@ -1,5 +1,6 @@
 //! Scenarios that cannot be run, and why.
 
+use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 use planner_core::survey::SetupError;
 use planner_core::{Cell, Extent, ExtentError};
 use thiserror::Error;
@@ -37,6 +38,11 @@ pub enum ScenarioError {
          degrees, not {fov}; the explorer turns it"
     )]
     NeverTurns { planner: PlannerKind, fov: u16 },
+    #[error(
+        "--range {range}: planner {planner} takes in at most {MAX_RADIUS} cells around it; the \
+         explorer takes in {MAX_LONG_RADIUS}"
+    )]
+    ShortSighted { planner: PlannerKind, range: u8 },
     #[error(
         "--preset {preset}: planner {planner} takes every sensor for truthful; the explorer does not"
     )]

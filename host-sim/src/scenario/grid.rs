@@ -20,7 +20,8 @@ pub struct Scenario {
     pub starts: Vec<Cell>,
     /// What decides in each robot.
     pub planner: PlannerKind,
-    /// Sensor range in cells, 1 to 15.
+    /// Sensor range in cells, 1 to 31; more than 15 for planners that
+    /// [see so far](PlannerKind::sees_far), and looks that do not err.
     pub range: u8,
     /// The sensor's field of view around the robot's heading, in degrees, 1 to
     /// [`ALL_AROUND`]. Robots begin turned to the east.
@@ -70,9 +71,21 @@ impl Scenario {
     /// What is out of range.
     pub fn check(&self) -> Result<(), ScenarioError> {
         self.conditions.check(self.starts.len())?;
-        if !(1..=sight::MAX_RADIUS).contains(&self.range) {
-            let expected = format!("1 to {} cells", sight::MAX_RADIUS);
+        if !(1..=sight::MAX_LONG_RADIUS).contains(&self.range) {
+            let expected = format!("1 to {} cells", sight::MAX_LONG_RADIUS);
             return Err(ScenarioError::setting("range", self.range, expected));
+        }
+        if self.range > sight::MAX_RADIUS {
+            if !self.planner.sees_far() {
+                return Err(ScenarioError::ShortSighted {
+                    planner: self.planner,
+                    range: self.range,
+                });
+            }
+            if self.conditions.trouble.has_errors() {
+                let expected = format!("1 to {} cells where looks err", sight::MAX_RADIUS);
+                return Err(ScenarioError::setting("range", self.range, expected));
+            }
         }
         if !(1..=ALL_AROUND).contains(&self.fov) {
             let expected = format!("1 to {ALL_AROUND} degrees");

@@ -115,6 +115,11 @@ impl Trouble {
         *self == Self::default()
     }
 
+    /// Whether looks may be wrong, or laid where they do not belong.
+    pub(super) fn has_errors(&self) -> bool {
+        self.can_open_walls() || self.false_walls > 0.0
+    }
+
     /// Whether a look may tell a robot that it can go where it cannot.
     pub(crate) fn can_open_walls(&self) -> bool {
         self.false_frees > 0.0 || self.misplaced > 0.0 || self.drift > 0

@@ -7,11 +7,11 @@ mod errors;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use planner_core::{Cell, Direction, Sighting};
+use planner_core::{Cell, Direction, Sighting, sight};
 
 use crate::scenario::grid::Scenario;
 use crate::scenario::{Conditions, Faults, Trouble};
-use crate::sensor::{Sensor, View, only};
+use crate::sensor::{FarTile, Sensor, View};
 
 use bodies::Bodies;
 use errors::Errors;
@@ -157,6 +157,20 @@ impl Senses {
         self.errors.told(look, seen)
     }
 
+    /// What the sensor of a robot at `at` tells its planner of what lies beyond a
+    /// [`sighting`](Self::sighting), by the first look of this tick.
+    ///
+    /// # Panics
+    /// If the cell lies outside of the world.
+    pub fn far(&self, robot: usize, at: Cell) -> Cow<'_, [FarTile]> {
+        let reaches_farther = self.sensor.range() > sight::MAX_RADIUS;
+        match self.view(robot, at).filter(|_| reaches_farther) {
+            None => Cow::Borrowed(&[]),
+            Some(Cow::Borrowed(view)) => Cow::Borrowed(&view.far),
+            Some(Cow::Owned(view)) => Cow::Owned(view.far.into()),
+        }
+    }
+
     fn shown(&self, robot: usize, at: Cell) -> Cow<'_, View> {
         let (sensor, faults) = (&self.sensor, &self.faults);
         let fell_silent = faults
@@ -171,8 +185,7 @@ impl Senses {
             return view;
         }
         let is_blind = |cell: Cell| faults.blind.iter().any(|of| of.holds(cell, self.tick));
-        let shown = only(&view.sighting, |cell| !is_blind(cell));
-        Cow::Owned(View::new(sensor.world(), shown))
+        Cow::Owned(view.only(sensor.world(), |cell| !is_blind(cell)))
     }
 
     /// The world, and what stands in it.

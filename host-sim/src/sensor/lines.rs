@@ -2,18 +2,18 @@
 
 use std::sync::OnceLock;
 
-use planner_core::sight::{MAX_RADIUS, line_of_sight};
-use planner_core::{Cell, Sighting};
+use planner_core::Cell;
+use planner_core::sight::{LongSighting, MAX_LONG_RADIUS, line_of_sight};
 
 use crate::world::World;
 
-/// The window around a robot: as many rows and columns as a [`Sighting`] has, and the same
-/// bits.
-const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
-const MIDDLE: i16 = MAX_RADIUS as i16;
+/// The window around a robot: as many rows and columns as a [`LongSighting`] has, and the
+/// same bits.
+const SPAN: usize = 2 * MAX_LONG_RADIUS as usize + 1;
+const MIDDLE: i16 = MAX_LONG_RADIUS as i16;
 
 /// Blocked cells of the window.
-type Window = [u32; SPAN];
+type Window = [u64; SPAN];
 
 /// The obstacles of a world as rows of bits, with blocked cells all around.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ pub(super) struct Obstacles {
 impl Obstacles {
     pub(super) fn of(world: &World) -> Self {
         let extent = world.extent();
-        let margin = 2 * usize::from(MAX_RADIUS);
+        let margin = 2 * usize::from(MAX_LONG_RADIUS);
         let words = (usize::from(extent.width) + margin).div_ceil(64) + 1;
         let rows = usize::from(extent.height) + margin;
         let mut bits = vec![u64::MAX; words * rows];
@@ -40,12 +40,12 @@ impl Obstacles {
     /// The window around a cell of the world, its rows within `range` alone.
     fn around(&self, cell: Cell, range: u8) -> Window {
         let (x, y) = (cell.x as usize, cell.y as usize);
-        let mut window = [u32::MAX; SPAN];
-        let rows = usize::from(MAX_RADIUS - range)..=usize::from(MAX_RADIUS + range);
+        let mut window = [u64::MAX; SPAN];
+        let rows = usize::from(MAX_LONG_RADIUS - range)..=usize::from(MAX_LONG_RADIUS + range);
         for row in rows {
             let first = (y + row) * self.words + x / 64;
             let pair = u128::from(self.bits[first]) | u128::from(self.bits[first + 1]) << 64;
-            window[row] = (pair >> (x % 64)) as u32;
+            window[row] = (pair >> (x % 64)) as u64;
         }
         window
     }
@@ -55,7 +55,7 @@ impl Obstacles {
 #[derive(Clone, Copy, Debug)]
 struct Part {
     row: usize,
-    bits: u32,
+    bits: u64,
 }
 
 impl Part {
@@ -83,9 +83,9 @@ struct Line {
 
 /// The lines to all cells of a disc, for all robots that see so far.
 pub(super) fn lines(range: u8) -> &'static Lines {
-    static ALL: [OnceLock<Lines>; MAX_RADIUS as usize + 1] =
-        [const { OnceLock::new() }; MAX_RADIUS as usize + 1];
-    let range = range.min(MAX_RADIUS);
+    static ALL: [OnceLock<Lines>; MAX_LONG_RADIUS as usize + 1] =
+        [const { OnceLock::new() }; MAX_LONG_RADIUS as usize + 1];
+    let range = range.min(MAX_LONG_RADIUS);
     ALL[usize::from(range)].get_or_init(|| Lines::new(range))
 }
 
@@ -108,9 +108,9 @@ impl Lines {
         }
     }
 
-    /// What [`look`](planner_core::sight::look) shows in a world where the cells of `more`
+    /// What [`look_far`](planner_core::sight::look_far) shows in a world where the cells of `more`
     /// are blocked too.
-    pub(super) fn look(&self, obstacles: &Obstacles, from: Cell, more: &[Cell]) -> Sighting {
+    pub(super) fn look(&self, obstacles: &Obstacles, from: Cell, more: &[Cell]) -> LongSighting {
         let mut window = obstacles.around(from, self.range);
         for cell in more {
             let (dx, dy) = (cell.x - from.x, cell.y - from.y);
@@ -130,7 +130,7 @@ impl Lines {
                 seen[line.to.row] |= line.to.bits;
             }
         }
-        let mut sighting = Sighting::new(from);
+        let mut sighting = LongSighting::new(from);
         for ((seen, blocked), dy) in seen.iter().zip(&window).zip(-MIDDLE..) {
             sighting.see_row(dy, seen & !blocked, seen & blocked);
         }
@@ -193,13 +193,14 @@ mod tests {
             });
             let world = world.unwrap();
             let obstacles = Obstacles::of(&world);
-            let range = 1 + (seed % 15) as u8;
+            let range = 1 + (seed % 31) as u8;
             for from in world.free_cells() {
                 let more = [from.step(planner_core::Direction::East), Cell::new(0, 30)];
                 for more in [&more[..0], &more] {
                     let is_blocked = |cell| !world.is_free(cell) || more.contains(&cell);
                     let shown = lines(range).look(&obstacles, from, more);
-                    assert_eq!(shown, sight::look(from, range, is_blocked));
+                    assert_eq!(shown, sight::look_far(from, range, is_blocked));
+                    assert_eq!(shown.near(), sight::look(from, range, is_blocked));
                 }
             }
         }

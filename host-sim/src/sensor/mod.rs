@@ -4,7 +4,8 @@ mod lines;
 
 use std::sync::{Arc, OnceLock};
 
-use planner_core::tile::TILE;
+use planner_core::sight::{Look, Row};
+use planner_core::tile::{TILE, TileIndex, bits};
 use planner_core::{Cell, Direction, Sighting, sight};
 
 use crate::world::World;
@@ -29,11 +30,16 @@ pub struct Sensor {
     views: Vec<OnceLock<Box<View>>>,
 }
 
+/// A tile beyond [`sight::MAX_RADIUS`]: the cells seen free and blocked.
+pub type FarTile = (TileIndex, u64, u64);
+
 /// What is seen from one cell.
 #[derive(Clone, Debug)]
 pub struct View {
     /// What the robot is told.
     pub sighting: Sighting,
+    /// What it is told beyond that: of each tile the cells free and blocked.
+    pub far: Box<[FarTile]>,
     /// The cells seen free, as (tile, cells) with tiles numbered row by row.
     pub free: Box<[(usize, u64)]>,
 }
@@ -41,12 +47,31 @@ pub struct View {
 impl View {
     /// The cells that are shown as they are: free ones, and obstacles of the world.
     pub fn cells(&self, world: &World) -> impl Iterator<Item = Cell> {
-        let obstacles = self.sighting.blocked_cells();
+        let far = |cells: fn(&FarTile) -> u64| {
+            let tiles = self.far.iter();
+            tiles.flat_map(move |tile| bits(cells(tile)).map(|bit| tile.0.cell(bit)))
+        };
+        let obstacles = self.sighting.blocked_cells().chain(far(|tile| tile.2));
         let obstacles = obstacles.filter(|&cell| !world.is_free(cell));
-        self.sighting.free_cells().chain(obstacles)
+        let free = self.sighting.free_cells().chain(far(|tile| tile.1));
+        free.chain(obstacles)
+    }
+
+    /// What of it a sensor shows that shows these cells alone.
+    pub(crate) fn only(&self, world: &World, shows: impl Fn(Cell) -> bool) -> Self {
+        let far = self.far.iter().map(|&(at, free, blocked)| {
+            let shown = bits(free | blocked).filter(|&bit| shows(at.cell(bit)));
+            let shown = shown.fold(0, |cells, bit| cells | 1 << bit);
+            (at, free & shown, blocked & shown)
+        });
+        Self::with(world, only(&self.sighting, &shows), far.collect())
     }
 
     pub(crate) fn new(world: &World, sighting: Sighting) -> Self {
+        Self::with(world, sighting, Box::default())
+    }
+
+    fn with(world: &World, sighting: Sighting, far: Box<[FarTile]>) -> Self {
         let columns = tile_columns(world);
         let mut free: Vec<(usize, u64)> = Vec::new();
         let Cell { x, y } = sighting.centre();
@@ -70,15 +95,23 @@ impl View {
                 }
             }
         }
+        for &(at, cells, _) in far.iter().filter(|(_, free, _)| *free != 0) {
+            let number = usize::from(at.y) * columns + usize::from(at.x);
+            match free.iter_mut().find(|(known, _)| *known == number) {
+                Some((_, known)) => *known |= cells,
+                None => free.push((number, cells)),
+            }
+        }
         Self {
             sighting,
+            far,
             free: free.into(),
         }
     }
 }
 
 impl Sensor {
-    /// A sensor of `range` cells (1 to [`sight::MAX_RADIUS`]; larger values
+    /// A sensor of `range` cells (1 to [`sight::MAX_LONG_RADIUS`]; larger values
     /// count as that) that looks all around.
     pub fn new(world: Arc<World>, range: u8) -> Self {
         Self::with_fov(world, range, ALL_AROUND)
@@ -141,20 +174,27 @@ impl Sensor {
 
     fn look(&self, cell: Cell, heading: Direction, blocked: &[Cell]) -> View {
         let all = self.lines.look(&self.obstacles, cell, blocked);
-        let sighting = match self.fov {
+        let shown = match self.fov {
             ALL_AROUND.. => all,
             fov => only(&all, |seen| {
                 let (dx, dy) = (seen.x - cell.x, seen.y - cell.y);
                 is_in_sector((dx, dy), heading, fov)
             }),
         };
-        View::new(&self.world, sighting)
+        let far = match self.range {
+            ..=sight::MAX_RADIUS => Box::default(),
+            _ => shown.far_tiles().collect(),
+        };
+        View::with(&self.world, shown.near(), far)
     }
 }
 
-/// The cells of a sighting for which `shows` holds, and the robot's own.
-pub(crate) fn only(sighting: &Sighting, shows: impl Fn(Cell) -> bool) -> Sighting {
-    let mut shown = Sighting::new(sighting.centre());
+/// The cells of a look for which `shows` holds, and the robot's own.
+fn only<R: Row, const SPAN: usize>(
+    sighting: &Look<R, SPAN>,
+    shows: impl Fn(Cell) -> bool,
+) -> Look<R, SPAN> {
+    let mut shown = Look::new(sighting.centre());
     sighting
         .free_cells()
         .filter(|&cell| shows(cell))

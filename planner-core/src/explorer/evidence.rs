@@ -115,6 +115,14 @@ impl SensorModel {
         }
     }
 
+    /// What a cell is that one look shows blocked beyond [`MAX_RADIUS`].
+    pub(super) fn far_wall(&self) -> Level {
+        match self.margin() {
+            1 if self.sure_range > MAX_RADIUS => Level::Wall,
+            _ => Level::Doubtful,
+        }
+    }
+
     fn margin(&self) -> u8 {
         self.margin.clamp(1, LARGEST_MARGIN)
     }
@@ -401,17 +409,7 @@ fn near(at: TileIndex, centre: Cell, range: u8) -> u64 {
     if range >= MAX_RADIUS {
         return u64::MAX;
     }
-    let side = |from: u8, centre: i16| {
-        let from = i32::from(centre) - i32::from(range) - 8 * i32::from(from);
-        let to = from + 2 * i32::from(range);
-        let above = |bit: i32| 0xffu32.checked_shl(bit.clamp(0, 8) as u32).unwrap_or(0);
-        (above(from) & !above(to + 1) & 0xff) as u8
-    };
-    let (columns, rows) = (side(at.x, centre.x), side(at.y, centre.y));
-    (0..8).fold(0, |cells, row| {
-        let row_cells = if rows >> row & 1 == 1 { columns } else { 0 };
-        cells | u64::from(row_cells) << (8 * row)
-    })
+    at.near(centre, range)
 }
 
 /// A counter for each cell of a tile, -3 to 3, a bit of its two's complement a word.

@@ -562,6 +562,18 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         learnt
     }
 
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        if self.is_astray {
+            return Learnt::default();
+        }
+        let wall = self.config.sensor.far_wall();
+        let learnt = self.around.map.observe_far(at, free, blocked, wall);
+        self.others.purse.saw(learnt.cells);
+        self.link.announce(&mut self.around.map);
+        self.learn(learnt);
+        learnt
+    }
+
     fn tick(&mut self) -> Action {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();

@@ -373,6 +373,17 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         learnt
     }
 
+    /// Takes in what was seen of a tile from far away: of cells that nobody has seen, the
+    /// free ones, and the blocked ones at that level. Work: the tile and its four
+    /// neighbours.
+    pub fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64, wall: Level) -> Learnt {
+        let before = self.tile(at);
+        let unseen = !(before.known() | before.doubtful());
+        let free = free & !blocked & unseen;
+        let seen = before.with(free, Level::Free).with(blocked & unseen, wall);
+        self.join_tile(at, seen)
+    }
+
     /// Joins another robot's tile into this map; ignored outside. Work: the tile
     /// and its four neighbours.
     pub fn join_tile(&mut self, at: TileIndex, other: Tile) -> Learnt {

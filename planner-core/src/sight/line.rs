@@ -1,6 +1,6 @@
 //! Line of sight between the centres of two cells.
 
-use super::{MAX_RADIUS, Sighting};
+use super::{LongSighting, Look, MAX_LONG_RADIUS, MAX_RADIUS, Row, Sighting};
 use crate::cell::Cell;
 
 /// Whether `to` can be seen from `from`: no cell that the segment between their
@@ -49,19 +49,32 @@ pub fn line_of_sight(from: Cell, to: Cell, is_blocked: impl Fn(Cell) -> bool) ->
 ///
 /// Work: `(2·radius + 1)²` lines of at most `2·radius` cells.
 pub fn look(centre: Cell, radius: u8, is_blocked: impl Fn(Cell) -> bool) -> Sighting {
-    let mut sighting = Sighting::new(centre);
-    let radius = i16::from(radius.min(MAX_RADIUS));
+    within(centre, radius.min(MAX_RADIUS), is_blocked)
+}
+
+/// As [`look`], of at most [`MAX_LONG_RADIUS`].
+pub fn look_far(centre: Cell, radius: u8, is_blocked: impl Fn(Cell) -> bool) -> LongSighting {
+    within(centre, radius.min(MAX_LONG_RADIUS), is_blocked)
+}
+
+fn within<R: Row, const SPAN: usize>(
+    centre: Cell,
+    radius: u8,
+    is_blocked: impl Fn(Cell) -> bool,
+) -> Look<R, SPAN> {
+    let mut look = Look::new(centre);
+    let radius = i16::from(radius);
     for dy in -radius..=radius {
         for dx in -radius..=radius {
             let cell = Cell::new(centre.x.saturating_add(dx), centre.y.saturating_add(dy));
             if dx * dx + dy * dy <= radius * radius && line_of_sight(centre, cell, &is_blocked) {
                 if is_blocked(cell) {
-                    sighting.see_blocked(cell);
+                    look.see_blocked(cell);
                 } else {
-                    sighting.see_free(cell);
+                    look.see_free(cell);
                 }
             }
         }
     }
-    sighting
+    look
 }

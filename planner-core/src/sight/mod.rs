@@ -6,53 +6,126 @@
 mod beam;
 mod line;
 mod metres;
+mod row;
 mod scan;
 mod walk;
 
 pub use beam::{Beam, Bearing, RangeSensor};
-pub use line::{line_of_sight, look};
+pub use line::{line_of_sight, look, look_far};
+pub use row::Row;
 pub use scan::{Pose, RangeScan, ScanError};
 
 use crate::cell::Cell;
 use crate::tile::{TILE, TileIndex};
 
-/// The largest perception radius in cells.
+/// The largest perception radius of a [`Sighting`] in cells.
 pub const MAX_RADIUS: u8 = 15;
 
-/// Rows (and columns) of a sighting.
-const SPAN: usize = 2 * MAX_RADIUS as usize + 1;
-const _: () = assert!(
-    SPAN <= u32::BITS as usize,
-    "a row of a sighting is a u32: MAX_RADIUS is at most 15"
-);
+/// That of a [`LongSighting`].
+pub const MAX_LONG_RADIUS: u8 = 31;
 
-const WHOLE_ROW: u32 = (1 << SPAN) - 1;
-
-/// Cells seen from `centre`, within [`MAX_RADIUS`] in both axes.
+/// Cells seen from `centre`, within [`MAX_RADIUS`] in both axes. 376 bytes.
 ///
-/// Bit `x - centre.x + 15` of row `y - centre.y + 15` is the cell `(x, y)`. No
-/// cell is both free and blocked: blocked wins. A cell that was seen blocked more than
-/// once, by two beams of a scan for example, is *firm*. 376 bytes.
+/// Bit `x - centre.x + 15` of row `y - centre.y + 15` is the cell `(x, y)`.
+pub type Sighting = Look<u32, { 2 * MAX_RADIUS as usize + 1 }>;
+
+/// Cells seen by a sensor that reaches farther, within [`MAX_LONG_RADIUS`]; bits as in a
+/// [`Sighting`], with 31 instead of 15. 1,520 bytes. See
+/// [`Planner::observe_long`](crate::Planner::observe_long).
+pub type LongSighting = Look<u64, { 2 * MAX_LONG_RADIUS as usize + 1 }>;
+
+/// Cells seen from `centre`, in `SPAN` rows of as many columns around it.
+///
+/// No cell is both free and blocked: blocked wins. A cell that was seen blocked more than
+/// once, by two beams of a scan for example, is *firm*.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Sighting {
+#[cfg_attr(
+    feature = "serde",
+    serde(bound(
+        serialize = "[R; SPAN]: serde::Serialize",
+        deserialize = "[R; SPAN]: serde::Deserialize<'de>"
+    ))
+)]
+pub struct Look<R, const SPAN: usize> {
     centre: Cell,
-    free: [u32; SPAN],
-    blocked: [u32; SPAN],
-    firm: [u32; SPAN],
+    free: [R; SPAN],
+    blocked: [R; SPAN],
+    firm: [R; SPAN],
 }
 
 impl Sighting {
+    /// The cells seen free at most two columns and two rows away: bit `x - centre.x + 2` of
+    /// row `y - centre.y + 2`.
+    pub(crate) fn free_near(&self) -> [u8; 5] {
+        const CORNER: usize = MAX_RADIUS as usize - 2;
+        let mut near = [0; 5];
+        for (near, row) in near.iter_mut().zip(self.free.iter().skip(CORNER)) {
+            *near = (row >> CORNER) as u8 & 0x1f;
+        }
+        near
+    }
+}
+
+impl LongSighting {
+    /// The cells within [`MAX_RADIUS`].
+    pub fn near(&self) -> Sighting {
+        const BY: usize = (MAX_LONG_RADIUS - MAX_RADIUS) as usize;
+        let mut near = Sighting::new(self.centre);
+        let part = |to: &mut [u32], from: &[u64]| {
+            for (to, from) in to.iter_mut().zip(from.iter().skip(BY)) {
+                *to = (from >> BY) as u32 & Sighting::whole();
+            }
+        };
+        part(&mut near.free, &self.free);
+        part(&mut near.blocked, &self.blocked);
+        part(&mut near.firm, &self.firm);
+        near
+    }
+
+    /// The cells seen beyond [`MAX_RADIUS`]: of each tile those free and those blocked. At
+    /// most 81 tiles. Work: 16 rows a tile.
+    pub fn far_tiles(&self) -> impl Iterator<Item = (TileIndex, u64, u64)> + '_ {
+        self.tiles().filter_map(move |at| {
+            let near = at.near(self.centre, MAX_RADIUS);
+            let (free, blocked) = self.tile(at);
+            let (free, blocked) = (free & !near, blocked & !near);
+            (free | blocked != 0).then_some((at, free, blocked))
+        })
+    }
+}
+
+impl<R: Row, const SPAN: usize> Look<R, SPAN> {
+    const RADIUS: usize = {
+        assert!(
+            SPAN % 2 == 1 && SPAN < R::BITS as usize && SPAN < u8::MAX as usize,
+            "a row of a look has an odd number of columns, and fits its bits"
+        );
+        SPAN / 2
+    };
+
     /// Nothing seen yet but the cell that the robot stands on, which is free.
-    pub const fn new(centre: Cell) -> Self {
-        let mut free = [0; SPAN];
-        free[MAX_RADIUS as usize] = 1 << MAX_RADIUS;
+    pub fn new(centre: Cell) -> Self {
+        let mut free = [R::NONE; SPAN];
+        if let Some(row) = free.get_mut(Self::RADIUS) {
+            *row = Self::own();
+        }
         Self {
             centre,
             free,
-            blocked: [0; SPAN],
-            firm: [0; SPAN],
+            blocked: [R::NONE; SPAN],
+            firm: [R::NONE; SPAN],
         }
+    }
+
+    /// The bits of all columns.
+    fn whole() -> R {
+        !(R::ALL << SPAN as u32)
+    }
+
+    /// The bit of the robot's own column.
+    fn own() -> R {
+        R::FIRST << Self::RADIUS as u32
     }
 
     /// Where the robot stood.
@@ -65,7 +138,7 @@ impl Sighting {
         if let Some((row, bit)) = self.place(cell)
             && let (Some(free), Some(blocked)) = (self.free.get_mut(row), self.blocked.get(row))
         {
-            *free |= bit & !blocked;
+            *free |= bit & !*blocked;
         }
     }
 
@@ -85,13 +158,14 @@ impl Sighting {
         }
     }
 
-    /// Adds cells of the row that lies `dy` below the robot's own: bit `n` stands for the
-    /// cell `n - 15` to the right of it, as by [`see_free`](Self::see_free) and
-    /// [`see_blocked`](Self::see_blocked). Ignored beyond the radius.
-    pub fn see_row(&mut self, dy: i16, free: u32, blocked: u32) {
-        let Some(row) = row_of(dy) else { return };
-        let own = if dy == 0 { 1 << MAX_RADIUS } else { 0 };
-        let blocked_now = WHOLE_ROW & blocked & !own;
+    /// Adds cells of the row that lies `dy` below the robot's own, with its bits (of a
+    /// [`Sighting`], bit `n` stands for the cell `n - 15` to the right), as by
+    /// [`see_free`](Self::see_free) and [`see_blocked`](Self::see_blocked). Ignored beyond
+    /// the radius.
+    pub fn see_row(&mut self, dy: i16, free: R, blocked: R) {
+        let Some(row) = Self::row_of(dy) else { return };
+        let own = if dy == 0 { Self::own() } else { R::NONE };
+        let blocked_now = Self::whole() & blocked & !own;
         if let (Some(free_row), Some(blocked_row), Some(firm)) = (
             self.free.get_mut(row),
             self.blocked.get_mut(row),
@@ -99,21 +173,21 @@ impl Sighting {
         ) {
             *firm |= *blocked_row & blocked_now;
             *blocked_row |= blocked_now;
-            *free_row = (*free_row | WHOLE_ROW & free) & !*blocked_row;
+            *free_row = (*free_row | Self::whole() & free) & !*blocked_row;
         }
     }
 
     /// The cells seen free in the row that lies `dy` below the robot's own, in the bits of
     /// [`see_row`](Self::see_row).
-    pub fn free_row(&self, dy: i16) -> u32 {
-        let row = row_of(dy).and_then(|row| self.free.get(row));
-        row.copied().unwrap_or(0)
+    pub fn free_row(&self, dy: i16) -> R {
+        let row = Self::row_of(dy).and_then(|row| self.free.get(row));
+        row.copied().unwrap_or(R::NONE)
     }
 
     /// Blocked wins, also where cells were seen free past [`see_free`](Self::see_free).
     fn settle(&mut self) {
         for (free, blocked) in self.free.iter_mut().zip(&self.blocked) {
-            *free &= WHOLE_ROW & !blocked;
+            *free &= Self::whole() & !*blocked;
         }
     }
 
@@ -132,36 +206,25 @@ impl Sighting {
         self.has(cell, &self.firm)
     }
 
-    fn has(&self, cell: Cell, rows: &[u32; SPAN]) -> bool {
+    fn has(&self, cell: Cell, rows: &[R; SPAN]) -> bool {
         self.place(cell)
-            .is_some_and(|(row, bit)| rows.get(row).is_some_and(|row| row & bit != 0))
+            .is_some_and(|(row, bit)| rows.get(row).is_some_and(|row| *row & bit != R::NONE))
     }
 
-    /// The cells seen free at most two columns and two rows away: bit `x - centre.x + 2` of
-    /// row `y - centre.y + 2`.
-    pub(crate) fn free_near(&self) -> [u8; 5] {
-        const CORNER: usize = MAX_RADIUS as usize - 2;
-        let mut near = [0; 5];
-        for (near, row) in near.iter_mut().zip(self.free.iter().skip(CORNER)) {
-            *near = (row >> CORNER) as u8 & 0x1f;
-        }
-        near
-    }
-
-    /// The cells seen free, row by row. At most 961.
+    /// The cells seen free, row by row. At most 961 of a [`Sighting`].
     pub fn free_cells(&self) -> impl Iterator<Item = Cell> + '_ {
         self.cells(&self.free)
     }
 
-    /// The cells seen blocked, row by row. At most 960.
+    /// The cells seen blocked, row by row. At most 960 of a [`Sighting`].
     pub fn blocked_cells(&self) -> impl Iterator<Item = Cell> + '_ {
         self.cells(&self.blocked)
     }
 
-    fn cells<'a>(&'a self, rows: &'a [u32; SPAN]) -> impl Iterator<Item = Cell> + 'a {
+    fn cells<'a>(&'a self, rows: &'a [R; SPAN]) -> impl Iterator<Item = Cell> + 'a {
         let corner = self.corner();
         rows.iter().zip(0i16..).flat_map(move |(&row, dy)| {
-            crate::tile::bits(u64::from(row)).map(move |dx| {
+            crate::tile::bits(row.into()).map(move |dx| {
                 Cell::new(
                     corner.0.saturating_add(dx as i16),
                     corner.1.saturating_add(dy),
@@ -173,39 +236,41 @@ impl Sighting {
     /// The north-western corner of the rows, as `(x, y)`.
     const fn corner(&self) -> (i16, i16) {
         (
-            self.centre.x.saturating_sub(MAX_RADIUS as i16),
-            self.centre.y.saturating_sub(MAX_RADIUS as i16),
+            self.centre.x.saturating_sub(Self::RADIUS as i16),
+            self.centre.y.saturating_sub(Self::RADIUS as i16),
         )
     }
 
-    fn place(&self, cell: Cell) -> Option<(usize, u32)> {
+    fn place(&self, cell: Cell) -> Option<(usize, R)> {
         let (x, y) = self.corner();
         let column = u8::try_from(i32::from(cell.x) - i32::from(x)).ok()?;
         let row = usize::try_from(i32::from(cell.y) - i32::from(y)).ok()?;
-        (usize::from(column) < SPAN && row < SPAN).then(|| (row, 1 << column))
+        (usize::from(column) < SPAN && row < SPAN).then(|| (row, R::FIRST << u32::from(column)))
     }
 
     /// The block of tiles that holds all cells seen: its corner in tiles, and its side,
-    /// at most five.
+    /// at most five, or nine of a [`LongSighting`].
     fn tile_block(&self) -> ((i16, i16), u8) {
         // The robot's own cell is among them.
-        let (mut columns, mut rows) = (1u32 << MAX_RADIUS, 1u32 << MAX_RADIUS);
-        for (row, (free, blocked)) in self.free.iter().zip(&self.blocked).enumerate() {
-            columns |= free | blocked;
-            rows |= u32::from(free | blocked != 0) << row;
+        let (mut columns, mut rows) = (Self::own(), Self::own());
+        for ((free, blocked), row) in self.free.iter().zip(&self.blocked).zip(0u32..) {
+            columns |= *free | *blocked;
+            if *free | *blocked != R::NONE {
+                rows |= R::FIRST << row;
+            }
         }
         let (x, y) = self.corner();
-        let tiles = |corner: i16, seen: u32| {
+        let tiles = |corner: i16, seen: R| {
             let tile = |bit: u32| corner.saturating_add(bit as i16) >> 3;
-            (tile(seen.trailing_zeros()), tile(31 - seen.leading_zeros()))
+            (tile(seen.first()), tile(seen.last()))
         };
         let ((west, east), (north, south)) = (tiles(x, columns), tiles(y, rows));
         let side = 1 + (east - west).max(south - north);
         ((west, north), side as u8)
     }
 
-    /// The tiles that hold cells seen, at most 25.
-    pub(crate) fn tiles(&self) -> impl Iterator<Item = TileIndex> + use<> {
+    /// The tiles that hold cells seen, at most 25, or 81 of a [`LongSighting`].
+    pub(crate) fn tiles(&self) -> impl Iterator<Item = TileIndex> + use<R, SPAN> {
         let (corner, span) = self.tile_block();
         (0..span).flat_map(move |dy| {
             (0..span).filter_map(move |dx| {
@@ -229,7 +294,7 @@ impl Sighting {
         self.in_tile(at, &self.firm)
     }
 
-    fn in_tile(&self, at: TileIndex, rows: &[u32; SPAN]) -> u64 {
+    fn in_tile(&self, at: TileIndex, rows: &[R; SPAN]) -> u64 {
         let (x, y) = self.corner();
         let dx = i32::from(at.x) * TILE as i32 - i32::from(x);
         let dy = i32::from(at.y) * TILE as i32 - i32::from(y);
@@ -238,26 +303,17 @@ impl Sighting {
             if let Ok(index) = usize::try_from(dy + row)
                 && let Some(&seen) = rows.get(index)
             {
-                cells |= u64::from(byte_at(seen, dx)) << (row * TILE as i32);
+                cells |= u64::from(seen.byte_at(dx)) << (row * TILE as i32);
             }
         }
         cells
     }
-}
 
-/// The eight bits of `row` from bit number `from` on, which may be negative.
-const fn byte_at(row: u32, from: i32) -> u8 {
-    match from {
-        0..=31 => (row >> from) as u8,
-        -7..=-1 => (row << -from) as u8,
-        _ => 0,
+    /// The index of the row `dy` below the robot's own.
+    fn row_of(dy: i16) -> Option<usize> {
+        let row = usize::try_from(i32::from(dy) + Self::RADIUS as i32).ok()?;
+        (row < SPAN).then_some(row)
     }
-}
-
-/// The index of the row `dy` below the robot's own.
-fn row_of(dy: i16) -> Option<usize> {
-    let row = usize::try_from(i32::from(dy) + i32::from(MAX_RADIUS)).ok()?;
-    (row < SPAN).then_some(row)
 }
 
 #[cfg(test)]

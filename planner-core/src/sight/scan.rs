@@ -4,7 +4,7 @@
 use core::fmt;
 
 use super::walk::Eye;
-use super::{Beam, RangeSensor, Sighting};
+use super::{Beam, LongSighting, Look, RangeSensor, Row, Sighting};
 use crate::cell::Cell;
 use crate::math;
 
@@ -94,6 +94,21 @@ impl<I: IntoIterator<Item = Beam>> RangeScan<I> {
     /// # Errors
     /// The pose or the sensor is not usable; a bad beam is only left out.
     pub fn sighting(self) -> Result<Sighting, ScanError> {
+        self.look()
+    }
+
+    /// As [`sighting`](Self::sighting), for a sensor that reaches farther: beams end at
+    /// [`MAX_LONG_RADIUS`](super::MAX_LONG_RADIUS) cells.
+    ///
+    /// Work: as there, with at most `2·31 + 2` cells a beam.
+    ///
+    /// # Errors
+    /// As [`sighting`](Self::sighting).
+    pub fn long_sighting(self) -> Result<LongSighting, ScanError> {
+        self.look()
+    }
+
+    fn look<R: Row, const SPAN: usize>(self) -> Result<Look<R, SPAN>, ScanError> {
         let (Pose { x, y, heading }, sensor) = (self.pose, self.sensor);
         let usable = |v: f32| v.is_finite() && (-FARTHEST..FARTHEST).contains(&v);
         if !(usable(x) && usable(y) && heading.is_finite()) {
@@ -106,7 +121,7 @@ impl<I: IntoIterator<Item = Beam>> RangeScan<I> {
             return Err(ScanError::Tolerance);
         }
         let (column, row) = (math::floor(x), math::floor(y));
-        let mut sighting = Sighting::new(Cell::new(column as i16, row as i16));
+        let mut sighting = Look::new(Cell::new(column as i16, row as i16));
         let eye = Eye::new(x - column, y - row, sensor.tolerance);
         let (sin, cos) = math::direction(heading);
         for Beam { bearing, range } in self.beams {

@@ -15,7 +15,7 @@
 //! - If t around the end touches no border, the world is not one of whole cells: what
 //!   was hit stands in this cell.
 
-use super::{MAX_RADIUS, Sighting};
+use super::{Look, Row};
 use crate::cell::Cell;
 
 /// 1 as a number of the walk: cells with 24 bits behind the point.
@@ -27,9 +27,6 @@ const ROUNDING: i32 = ONE / 8192;
 
 /// A beam along a border, by this or less a unit, only grazes what it hits there.
 const GRAZING: i32 = ONE / 5;
-
-/// No walk is longer: a beam crosses 15 columns and 15 rows, and one more of each.
-const STEPS: u32 = 2 * (MAX_RADIUS as u32 + 1);
 
 const fn fixed(value: f32) -> i32 {
     (value * ONE as f32) as i32
@@ -53,10 +50,10 @@ impl Eye {
     }
 
     /// Adds to the sighting what a beam shows. Cells that were crossed stay free beside
-    /// blocked ones until [`Sighting::settle`].
-    pub(super) fn cast(
+    /// blocked ones until [`Look::settle`].
+    pub(super) fn cast<R: Row, const SPAN: usize>(
         &self,
-        sighting: &mut Sighting,
+        sighting: &mut Look<R, SPAN>,
         direction: (f32, f32),
         range: f32,
         max_range: f32,
@@ -64,7 +61,7 @@ impl Eye {
         if range.is_nan() || range < 0.0 || direction.0.is_nan() {
             return;
         }
-        let reach = max_range.min(f32::from(MAX_RADIUS));
+        let reach = max_range.min((SPAN / 2) as f32);
         let is_hit = range < max_range && range <= reach;
         let length = if is_hit { range } else { reach };
         let beam = Way {
@@ -136,7 +133,7 @@ struct Way {
 impl Way {
     /// Sees the cells free that the beam crossed before its end. Gives the one after
     /// them, if the beam leads through that too.
-    fn follow(&self, sighting: &mut Sighting) -> Option<Place> {
+    fn follow<R: Row, const SPAN: usize>(&self, sighting: &mut Look<R, SPAN>) -> Option<Place> {
         let (x, y, tolerance) = (&self.x, &self.y, self.tolerance);
         let ends = (x.crossed(tolerance), y.crossed(tolerance));
         let (mut columns, mut rows) = ends;
@@ -147,10 +144,11 @@ impl Way {
         let margin = y.slope - tolerance;
         let band = (x.slope + margin - tolerance) as u32;
         let mut beside = (far(x.slope, y.start) - far(y.slope, x.start)) as i32 + margin;
-        let turn = if x.is_back { 1 } else { 31 };
+        let turn = if x.is_back { 1 } else { R::BITS - 1 };
         let down = if y.is_back { usize::MAX } else { 1 };
-        let (mut bit, mut row) = (1u32 << MAX_RADIUS, usize::from(MAX_RADIUS));
-        for _ in 0..STEPS {
+        let (mut bit, mut row) = (Look::<R, SPAN>::own(), SPAN / 2);
+        // A beam crosses as many columns and rows as the radius, and one more of each.
+        for _ in 0..2 * (SPAN / 2 + 1) {
             // Below 0 it is a large number.
             let is_through = beside as u32 <= band;
             if columns <= 0 && rows <= 0 {
@@ -162,7 +160,7 @@ impl Way {
             if beside > margin {
                 beside -= y.slope;
                 columns -= 1;
-                bit = bit.rotate_right(turn);
+                bit = bit.turned(turn);
             } else {
                 beside += x.slope;
                 rows -= 1;
@@ -180,7 +178,7 @@ impl Way {
     }
 
     /// Sees what the beam hit.
-    fn hit(&self, sighting: &mut Sighting) {
+    fn hit<R: Row, const SPAN: usize>(&self, sighting: &mut Look<R, SPAN>) {
         let (x, y) = (&self.x, &self.y);
         let (column, row) = (x.end >> FRACTION, y.end >> FRACTION);
         let (front, behind) = match (x.border(self.tolerance), y.border(self.tolerance)) {
@@ -199,7 +197,11 @@ impl Way {
         sighting.see_blocked(self.cell(sighting, behind));
     }
 
-    fn cell(&self, sighting: &Sighting, (column, row): Place) -> Cell {
+    fn cell<R: Row, const SPAN: usize>(
+        &self,
+        sighting: &Look<R, SPAN>,
+        (column, row): Place,
+    ) -> Cell {
         let on = |from: i16, axis: &Axis, by: i32| match axis.is_back {
             true => from.saturating_sub(by as i16),
             false => from.saturating_add(by as i16),

@@ -47,8 +47,8 @@ pub(super) struct SettingsArgs {
     /// Shares of messages lost, 0 to 1.
     #[arg(long, value_name = "P,…", value_delimiter = ',', default_value = "0", value_parser = parse_share)]
     loss: Vec<f64>,
-    /// Sensor ranges in cells, 1 to 15.
-    #[arg(long, value_name = "R,…", value_delimiter = ',', default_value = "5", value_parser = clap::value_parser!(u8).range(1..=15))]
+    /// Sensor ranges in cells, 1 to 31.
+    #[arg(long, value_name = "R,…", value_delimiter = ',', default_value = "5", value_parser = clap::value_parser!(u8).range(1..=31))]
     range: Vec<u8>,
     /// Families of worlds to generate, or `all`.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse_families)]

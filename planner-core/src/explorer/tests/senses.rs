@@ -2,6 +2,7 @@
 
 use super::scene::*;
 use super::*;
+use crate::map::Level;
 use crate::sight::look;
 
 /// A corridor with a door in the middle, which is free when it is first seen.
@@ -222,4 +223,37 @@ fn false_walls_in_sight_cost_a_detour_at_most() {
     }
     assert!(incomplete <= 6, "{incomplete} of 300 incomplete");
     assert!(unseen * 500 <= cells, "{unseen} of {cells} cells unseen");
+}
+
+/// A corridor of 20 cells with a wall at its end, seen from one end by a sensor that
+/// reaches so far.
+#[test]
+fn what_is_seen_from_afar_counts_where_nothing_is_known() {
+    let extent = Extent::new(22, 3);
+    let at = Cell::new(1, 1);
+    let far = |wall: Option<Cell>| {
+        let is_wall = |cell: Cell| cell.y != 1 || cell.x < 1 || Some(cell) == wall;
+        crate::sight::look_far(at, 20, is_wall)
+    };
+    for (sensor, level) in [
+        (SensorModel::truthful(), Level::Wall),
+        (SensorModel::lidar(), Level::Doubtful),
+        (SensorModel::rangers(), Level::Doubtful),
+    ] {
+        let config = Config {
+            sensor,
+            ..Config::new()
+        };
+        let mut robot = Small::new(config, RobotId(0), extent, at).unwrap();
+        let (end, before) = (Cell::new(19, 1), Cell::new(18, 1));
+        let learnt = robot.observe_long(&far(Some(end)));
+        assert!(learnt.cells >= 18, "{learnt:?}");
+        assert_eq!(robot.map().level(end), level);
+        assert_eq!(robot.map().level(before), Level::Free);
+        // Nothing that is known changes by a look from so far.
+        robot.observe_long(&far(Some(before)));
+        assert_eq!(robot.map().level(before), Level::Free);
+        robot.observe_long(&far(None));
+        assert_eq!(robot.map().level(end), level);
+    }
 }

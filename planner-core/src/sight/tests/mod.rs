@@ -109,6 +109,41 @@ proptest! {
         }
         prop_assert_eq!(sighting.free_cells().filter(|&c| !sighting.is_free(c)).count(), 0);
     }
+
+    #[test]
+    fn a_long_look_is_what_is_near_and_far_tiles(
+        walls in walls(), centre in cell(), radius in 1u8..=40,
+    ) {
+        let blocked = blocked_in(&walls);
+        let long = look_far(centre, radius, &blocked);
+        let cells = |look: &mut dyn Iterator<Item = Cell>| -> Vec<Cell> {
+            let mut cells: Vec<Cell> = look.collect();
+            cells.sort();
+            cells
+        };
+        let near = long.near();
+        if radius <= MAX_RADIUS {
+            prop_assert_eq!(&near, &look(centre, radius, &blocked));
+        }
+        let far: Vec<_> = long.far_tiles().collect();
+        prop_assert!(far.len() <= 81);
+        // Beyond the origin no map has cells.
+        let has_tile = |cell: &Cell| cell.x >= 0 && cell.y >= 0;
+        let in_tiles = |cells: fn(&(TileIndex, u64, u64)) -> u64| {
+            let bits = move |tile| crate::tile::bits(cells(tile)).map(|bit| tile.0.cell(bit));
+            far.iter().flat_map(bits).collect::<Vec<_>>()
+        };
+        let free = in_tiles(|tile| tile.1);
+        prop_assert_eq!(
+            cells(&mut near.free_cells().chain(free).filter(has_tile)),
+            cells(&mut long.free_cells().filter(has_tile))
+        );
+        let walls = in_tiles(|tile| tile.2);
+        prop_assert_eq!(
+            cells(&mut near.blocked_cells().chain(walls).filter(has_tile)),
+            cells(&mut long.blocked_cells().filter(has_tile))
+        );
+    }
 }
 
 #[test]

@@ -83,6 +83,37 @@ fn errors() -> impl Strategy<Value = Errors> {
         })
 }
 
+/// No free cell is told blocked, no blocked one free, and what the beams hit in front of
+/// them, corners aside, is seen.
+fn assert_no_lie<R: Row, const SPAN: usize>(
+    look: &Look<R, SPAN>,
+    tolerance: f32,
+    blocked: impl Fn(Cell) -> bool,
+    hits: &[Hit],
+) -> Result<(), TestCaseError> {
+    let centre = look.centre();
+    for cell in look.free_cells().filter(|&cell| cell != centre) {
+        prop_assert!(!blocked(cell), "{} free", cell);
+    }
+    for cell in look.blocked_cells() {
+        prop_assert!(blocked(cell), "{} blocked", cell);
+        prop_assert!(!look.is_free(cell));
+    }
+    let well_inside = 2.0 * f64::from(tolerance) + 0.001;
+    let middle = well_inside..1.0 - well_inside;
+    let far = (SPAN / 2) as f64 - 0.5;
+    for hit in hits
+        .iter()
+        .filter(|hit| hit.range < far && hit.cell != centre)
+    {
+        if middle.contains(&hit.place) && hit.slope > 0.25 {
+            prop_assert!(look.is_blocked(hit.cell), "{} not blocked", hit.cell);
+            prop_assert!(look.is_free(hit.front), "{} not free", hit.front);
+        }
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 4 * ProptestConfig::default().cases,
@@ -94,7 +125,8 @@ proptest! {
     #[test]
     fn a_scan_within_its_tolerance_tells_no_lie(
         walls in walls(), own in cell(), inside in (0.0..1.0f64, 0.0..1.0f64),
-        heading in -7.0..7.0f64, max_range in 1.0f32..18.0, side in 50.0..250.0f64,
+        heading in -7.0..7.0f64, is_long in any::<bool>(), range in 1.0f32..34.0,
+        side in 50.0..250.0f64,
         tolerance in prop_oneof![Just(RangeSensor::TOLERANCE), 0.03..=RangeSensor::MAX_TOLERANCE],
         errors in errors(),
     ) {
@@ -105,7 +137,9 @@ proptest! {
         let left = f64::from(tolerance) - 0.5 / side;
         let (of_range, of_position) = (errors.shares.0, (1.0 - errors.shares.0) * errors.shares.1);
         let of_heading = 1.0 - of_range - of_position;
-        let reach = f64::from(max_range.min(15.0)) + 1.0;
+        let max_range = if is_long { range } else { range / 2.0 };
+        let longest = if is_long { 31.0 } else { 15.0 };
+        let reach = f64::from(max_range.min(longest)) + 1.0;
         let pose = Pose {
             x: (x + left * of_position * errors.position.0) as f32,
             y: (y + left * of_position * errors.position.1) as f32,
@@ -123,22 +157,11 @@ proptest! {
             hits.extend(hit.filter(|_| range < f64::from(max_range)));
         }
         let sensor = RangeSensor { max_range, tolerance };
-        let sighting = RangeScan { pose, sensor, beams }.sighting().unwrap();
-        let centre = sighting.centre();
-        for cell in sighting.free_cells().filter(|&cell| cell != centre) {
-            prop_assert!(!blocked(cell), "{} free", cell);
-        }
-        for cell in sighting.blocked_cells() {
-            prop_assert!(blocked(cell), "{} blocked", cell);
-            prop_assert!(!sighting.is_free(cell));
-        }
-        let well_inside = 2.0 * f64::from(tolerance) + 0.001;
-        let middle = well_inside..1.0 - well_inside;
-        for hit in hits.iter().filter(|hit| hit.range < 14.5 && hit.cell != centre) {
-            if middle.contains(&hit.place) && hit.slope > 0.25 {
-                prop_assert!(sighting.is_blocked(hit.cell), "{} not blocked", hit.cell);
-                prop_assert!(sighting.is_free(hit.front), "{} not free", hit.front);
-            }
+        let scan = RangeScan { pose, sensor, beams };
+        if is_long {
+            assert_no_lie(&scan.long_sighting().unwrap(), tolerance, blocked, &hits)?;
+        } else {
+            assert_no_lie(&scan.sighting().unwrap(), tolerance, blocked, &hits)?;
         }
     }
 

@@ -15,7 +15,7 @@ mod types;
 use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
-use planner_core::sight::{Bearing, RangeScan, RangeSensor, ScanError};
+use planner_core::sight::{Beam, Bearing, Look, RangeScan, RangeSensor, Row, ScanError};
 use planner_core::{Cell, Errands as _, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
 
 pub use limits::{
@@ -147,22 +147,44 @@ pub extern "C" fn planner_observe_scan(
     answer(|| {
         let robot = robot(planner)?;
         let pose = input(pose)?;
-        let scan = RangeScan {
-            pose: pose.into(),
-            sensor: RangeSensor {
-                max_range,
-                tolerance,
-            },
-            beams: inputs(beams, count)?.iter().filter_map(PlannerBeam::read),
+        let sensor = RangeSensor {
+            max_range,
+            tolerance,
         };
-        let sighting = scan.sighting().or_else(|error| match error {
-            // Farther than cells have names.
-            ScanError::Pose if pose.is_finite() => Ok(Sighting::new(Cell::new(-1, -1))),
-            ScanError::Pose | ScanError::MaxRange | ScanError::Tolerance => {
-                Err(PlannerResult::Scan)
-            }
-        })?;
+        let scan = read_scan(pose, sensor, inputs(beams, count)?);
+        let sighting = or_astray(scan.sighting(), pose)?;
         observe(&mut robot.explorer, &sighting)
+    })
+}
+
+/// As `planner_observe_scan`, for a sensor that reaches more than 15 cells: its beams end at
+/// 31. Of what lies more than 15 cells away each way, only cells of which nothing is known
+/// count.
+///
+/// Stack: 0 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_observe_long_scan(
+    planner: *mut Planner,
+    pose: *const PlannerPose,
+    max_range: f32,
+    tolerance: f32,
+    beams: *const PlannerBeam,
+    count: usize,
+) -> PlannerResult {
+    answer(|| {
+        let robot = robot(planner)?;
+        let pose = input(pose)?;
+        let sensor = RangeSensor {
+            max_range,
+            tolerance,
+        };
+        let scan = read_scan(pose, sensor, inputs(beams, count)?);
+        let look = or_astray(scan.long_sighting(), pose)?;
+        observe(&mut robot.explorer, &look.near())?;
+        for (at, free, blocked) in look.far_tiles() {
+            robot.explorer.observe_far(at, free, blocked);
+        }
+        Ok(())
     })
 }
 
@@ -367,6 +389,32 @@ pub extern "C" fn planner_shut(
         count.write(last.len());
         Ok(())
     })
+}
+
+fn read_scan(
+    pose: &PlannerPose,
+    sensor: RangeSensor,
+    beams: &[PlannerBeam],
+) -> RangeScan<impl Iterator<Item = Beam>> {
+    RangeScan {
+        pose: pose.into(),
+        sensor,
+        beams: beams.iter().filter_map(PlannerBeam::read),
+    }
+}
+
+/// What a scan shows; from farther than cells have names, nothing, and from off the grid.
+fn or_astray<R: Row, const SPAN: usize>(
+    scanned: Result<Look<R, SPAN>, ScanError>,
+    pose: &PlannerPose,
+) -> Result<Look<R, SPAN>, PlannerResult> {
+    match scanned {
+        Ok(look) => Ok(look),
+        Err(ScanError::Pose) if pose.is_finite() => Ok(Look::new(Cell::new(-1, -1))),
+        Err(ScanError::Pose | ScanError::MaxRange | ScanError::Tolerance) => {
+            Err(PlannerResult::Scan)
+        }
+    }
 }
 
 /// Hands a sighting to the planner, also one from off the grid: it waits then.

@@ -384,6 +384,44 @@ fn beams_show_cells_and_bad_ones_nothing() {
     }
 }
 
+/// What lies farther than 15 cells counts as well, where the sensor reaches so far.
+#[test]
+fn a_long_scan_shows_what_is_far() {
+    let config = PlannerConfig {
+        width: 32,
+        start: PlannerCell { x: 1, y: 1 },
+        ..CONFIG
+    };
+    type Observe = extern "C" fn(
+        *mut Planner,
+        *const PlannerPose,
+        f32,
+        f32,
+        *const PlannerBeam,
+        usize,
+    ) -> PlannerResult;
+    let seen = |observe: Observe| {
+        let mut memory = memory();
+        let ready = created(&mut memory, config);
+        let pose = PlannerPose {
+            x: 1.5,
+            y: 1.5,
+            heading: 0.0,
+        };
+        let beams = [beam(0.0, 25.5)];
+        let result = observe(ready, &pose, 28.0, 0.1, beams.as_ptr(), beams.len());
+        assert_eq!(result, PlannerResult::Ok);
+        let off_grid = PlannerPose { y: 1e30, ..pose };
+        let result = observe(ready, &off_grid, 28.0, 0.1, beams.as_ptr(), beams.len());
+        assert_eq!(result, PlannerResult::OffGrid);
+        let result = observe(ready, &pose, f32::NAN, 0.1, beams.as_ptr(), beams.len());
+        assert_eq!(result, PlannerResult::Scan);
+        status(ready).known
+    };
+    assert_eq!(seen(planner_observe_scan), 16);
+    assert_eq!(seen(planner_observe_long_scan), 27);
+}
+
 #[test]
 fn off_the_grid_nothing_is_decided() {
     let mut memory = memory();

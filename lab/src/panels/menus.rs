@@ -12,7 +12,7 @@ use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
 use planner_core::Extent;
 use planner_core::explorer::MAX_CLEARANCE;
-use planner_core::sight::MAX_RADIUS;
+use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 
 use crate::app::App;
 use crate::export;
@@ -472,7 +472,11 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
                 ui.selectable_value(&mut setup.starts, starts, name);
             }
         });
-    ui.add(Slider::new(&mut setup.range, 1..=MAX_RADIUS).text("sensor range"));
+    let longest = match setup.planner.sees_far() {
+        true => MAX_LONG_RADIUS,
+        false => MAX_RADIUS,
+    };
+    ui.add(Slider::new(&mut setup.range, 1..=longest).text("sensor range"));
     if setup.planner.turns_sensor() {
         ui.add(Slider::new(&mut setup.fov, 1..=ALL_AROUND).text("field of view"));
     }

@@ -16,7 +16,9 @@ use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::sight::{Beam, Bearing, Look, RangeScan, RangeSensor, Row, ScanError};
-use planner_core::{Cell, Errands as _, Extent, Motion, Planner as _, Reason, RobotId, Sighting};
+use planner_core::{
+    Cell, Errands as _, Extent, LongSight as _, Motion, Planner as _, Reason, RobotId, Sighting,
+};
 
 pub use limits::{
     planner_add_rectangle, planner_keep_out, planner_restore, planner_save, planner_saved_bytes,

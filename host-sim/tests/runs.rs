@@ -15,8 +15,8 @@ use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, World, generate};
 use planner_core::radio::{FrameError, Heard, MAX_LEN};
 use planner_core::{
-    Action, AnyPlanner, Cell, Contact, Direction, Errands, Extent, Inspect, Learnt, Map, Motion,
-    Persist, Planner, Reason, RobotId, Sighting, Status, Stop, TileSet, Wait,
+    Action, AnyPlanner, Cell, Contact, Direction, Errands, Extent, Inspect, Learnt, LongSight, Map,
+    Motion, Persist, Planner, Reason, RobotId, Sighting, Status, Stop, TileSet, Wait,
 };
 
 fn scenario(planner: PlannerKind, family: Family, seed: u64) -> Scenario {
@@ -236,6 +236,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for LooksAround<TW, TH> {
 impl<const TW: usize, const TH: usize> Errands<TW, TH> for LooksAround<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Persist<TW, TH> for LooksAround<TW, TH> {}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for LooksAround<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LooksAround<TW, TH> {
     fn work(&self) -> u32 {

@@ -40,7 +40,7 @@ mod zeroed;
 pub use cell::{Cell, Direction, Extent, ExtentError};
 pub use map::{CellSet, Learnt, Map};
 pub use planner::{
-    AnyPlanner, Contact, Errands, Inspect, KeepOutError, Persist, Planner, RestoreError,
+    AnyPlanner, Contact, Errands, Inspect, KeepOutError, LongSight, Persist, Planner, RestoreError,
 };
 pub use point::Point;
 pub use robot::{Action, Activity, Motion, Reason, RobotId, Status, Stop, Wait};

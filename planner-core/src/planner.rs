@@ -101,27 +101,6 @@ pub trait Planner<const TW: usize, const TH: usize> {
     /// Takes in what the robot sees from where it stands.
     fn observe(&mut self, sighting: &Sighting) -> Learnt;
 
-    /// Takes in what the robot sees of a tile beyond
-    /// [`MAX_RADIUS`](crate::sight::MAX_RADIUS): cells free and blocked, a bit each. Only
-    /// what nobody has seen counts: one look does not speak against others from so far.
-    /// Call it after [`observe`](Self::observe). A planner that knows only what is near
-    /// ignores it. Work: the tile and its four neighbours.
-    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
-        let _ = (at, free, blocked);
-        Learnt::default()
-    }
-
-    /// As [`observe`](Self::observe) for a sensor that reaches farther, with
-    /// [`observe_far`](Self::observe_far) of what is beyond. Work: that of `observe`, and of
-    /// at most 81 tiles.
-    fn observe_long(&mut self, sighting: &LongSighting) -> Learnt {
-        let mut learnt = self.observe(&sighting.near());
-        for (at, free, blocked) in sighting.far_tiles() {
-            learnt += self.observe_far(at, free, blocked);
-        }
-        learnt
-    }
-
     /// Decides. Call it once per tick.
     fn tick(&mut self) -> Action;
 
@@ -326,6 +305,32 @@ pub trait Errands<const TW: usize, const TH: usize>: Planner<TW, TH> {
     }
 }
 
+/// Sensors that reach beyond [`MAX_RADIUS`](crate::sight::MAX_RADIUS). By default a planner
+/// knows only what is near.
+pub trait LongSight<const TW: usize, const TH: usize>: Planner<TW, TH> {
+    /// Takes in what the robot sees of a tile beyond that radius: cells free and blocked, a
+    /// bit each. Only cells of which nothing is known count: one look does not speak against
+    /// others from so far. Call it after [`Planner::observe`]. Work: the tile and its four
+    /// neighbours.
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        let _ = (at, free, blocked);
+        Learnt::default()
+    }
+
+    /// [`Planner::observe`] of what is near, and [`observe_far`](Self::observe_far) of the
+    /// rest. Work: that of `observe`, and of at most 81 tiles.
+    fn observe_long(&mut self, sighting: &LongSighting) -> Learnt
+    where
+        Self: Sized,
+    {
+        let mut learnt = self.observe(&sighting.near());
+        for (at, free, blocked) in sighting.far_tiles() {
+            learnt += self.observe_far(at, free, blocked);
+        }
+        learnt
+    }
+}
+
 /// Why a robot cannot keep out of cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -446,11 +451,11 @@ impl core::error::Error for RestoreError {}
 
 /// All of them, for whoever hosts planners of several kinds.
 pub trait AnyPlanner<const TW: usize, const TH: usize>:
-    Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH>
+    Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH> + LongSight<TW, TH>
 {
 }
 
 impl<P, const TW: usize, const TH: usize> AnyPlanner<TW, TH> for P where
-    P: Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH>
+    P: Contact<TW, TH> + Inspect<TW, TH> + Errands<TW, TH> + Persist<TW, TH> + LongSight<TW, TH>
 {
 }

@@ -5,8 +5,8 @@ use planner_core::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, M
 use planner_core::sight::line_of_sight;
 use planner_core::tile::{TileIndex, bits};
 use planner_core::{
-    Action, Activity, Cell, Contact, Errands, Extent, ExtentError, Inspect, Learnt, Map, Motion,
-    Persist, Planner, RobotId, Sighting, Status, Stop, TileSet,
+    Action, Activity, Cell, Contact, Errands, Extent, ExtentError, Inspect, Learnt, LongSight, Map,
+    Motion, Persist, Planner, RobotId, Sighting, Status, Stop, TileSet,
 };
 
 use super::waves::{Spot, Waves};
@@ -202,18 +202,6 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
         self.learn(learnt)
     }
 
-    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
-        if self.is_astray {
-            return Learnt::default();
-        }
-        let seen = bits(free | blocked).map(|bit| at.cell(bit).distance_squared(self.position));
-        let farthest = seen.max().unwrap_or(0).isqrt();
-        self.reach = self.reach.max(farthest as u8);
-        let learnt = self.map.observe_far(at, free, blocked, Level::Wall);
-        self.link.announce(&mut self.map);
-        self.learn(learnt)
-    }
-
     fn tick(&mut self) -> Action {
         self.work = 0;
         self.assignment = None;
@@ -295,6 +283,20 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
 
     fn hearsay(&self) -> Hearsay {
         self.link.hearsay()
+    }
+}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Peer<TW, TH> {
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        if self.is_astray {
+            return Learnt::default();
+        }
+        let seen = bits(free | blocked).map(|bit| at.cell(bit).distance_squared(self.position));
+        let farthest = seen.max().unwrap_or(0).isqrt();
+        self.reach = self.reach.max(farthest as u8);
+        let learnt = self.map.observe_far(at, free, blocked, Level::Wall);
+        self.link.announce(&mut self.map);
+        self.learn(learnt)
     }
 }
 

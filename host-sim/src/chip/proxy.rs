@@ -10,8 +10,8 @@ use planner_core::radio::{
 use planner_core::role::Role;
 use planner_core::tile::TileIndex;
 use planner_core::{
-    Action, Activity, Contact, Errands, Inspect, Learnt, Map, Motion, Persist, Planner, RobotId,
-    Sighting, Status, TileSet, Wait,
+    Action, Activity, Contact, Errands, Inspect, Learnt, LongSight, Map, Motion, Persist, Planner,
+    RobotId, Sighting, Status, TileSet, Wait,
 };
 
 use super::dialogue::Dialogue;
@@ -228,6 +228,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Proxy<TW, TH> {
 impl<const TW: usize, const TH: usize> Errands<TW, TH> for Proxy<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Persist<TW, TH> for Proxy<TW, TH> {}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Proxy<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Proxy<TW, TH> {
     fn work(&self) -> u32 {

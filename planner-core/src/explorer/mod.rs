@@ -167,7 +167,7 @@ use heapless::Vec;
 
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::map::{Learnt, Map};
-use crate::planner::{Contact, Inspect, Planner};
+use crate::planner::{Contact, Inspect, LongSight, Planner};
 use crate::radio::{Frame, FrameError, Heard, Hearsay, Link, LinkConfig, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::role::{self, Role};
@@ -562,18 +562,6 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
         learnt
     }
 
-    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
-        if self.is_astray {
-            return Learnt::default();
-        }
-        let wall = self.config.sensor.far_wall();
-        let learnt = self.around.map.observe_far(at, free, blocked, wall);
-        self.others.purse.saw(learnt.cells);
-        self.link.announce(&mut self.around.map);
-        self.learn(learnt);
-        learnt
-    }
-
     fn tick(&mut self) -> Action {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
@@ -721,6 +709,20 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
 
     fn hearsay(&self) -> Hearsay {
         self.link.hearsay()
+    }
+}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Explorer<TW, TH> {
+    fn observe_far(&mut self, at: TileIndex, free: u64, blocked: u64) -> Learnt {
+        if self.is_astray {
+            return Learnt::default();
+        }
+        let wall = self.config.sensor.far_wall();
+        let learnt = self.around.map.observe_far(at, free, blocked, wall);
+        self.others.purse.saw(learnt.cells);
+        self.link.announce(&mut self.around.map);
+        self.learn(learnt);
+        learnt
     }
 }
 

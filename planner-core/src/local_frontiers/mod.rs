@@ -41,7 +41,7 @@ mod view;
 use crate::cell::ExtentError;
 use crate::cell::{Cell, Direction, Extent};
 use crate::map::{Learnt, Map};
-use crate::planner::{Contact, Errands, Inspect, Persist, Planner};
+use crate::planner::{Contact, Errands, Inspect, LongSight, Persist, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
@@ -360,6 +360,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for LocalFrontiers<TW, TH
 impl<const TW: usize, const TH: usize> Errands<TW, TH> for LocalFrontiers<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Persist<TW, TH> for LocalFrontiers<TW, TH> {}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for LocalFrontiers<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LocalFrontiers<TW, TH> {
     /// Rows of the window.

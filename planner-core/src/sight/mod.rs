@@ -31,7 +31,7 @@ pub type Sighting = Look<u32, { 2 * MAX_RADIUS as usize + 1 }>;
 
 /// Cells seen by a sensor that reaches farther, within [`MAX_LONG_RADIUS`]; bits as in a
 /// [`Sighting`], with 31 instead of 15. 1,520 bytes. See
-/// [`Planner::observe_long`](crate::Planner::observe_long).
+/// [`LongSight`](crate::LongSight).
 pub type LongSighting = Look<u64, { 2 * MAX_LONG_RADIUS as usize + 1 }>;
 
 /// Cells seen from `centre`, in `SPAN` rows of as many columns around it.

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use planner_core::ExtentError;
 use planner_core::radio::{FrameError, Heard, Link, LinkConfig, MAX_LEN};
 use planner_core::{
-    Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, Map, Motion, Persist,
-    Planner, RobotId, Sighting, Status, Stop, TileSet,
+    Action, Activity, Cell, Contact, Errands, Extent, Inspect, Learnt, LongSight, Map, Motion,
+    Persist, Planner, RobotId, Sighting, Status, Stop, TileSet,
 };
 
 use super::board::Board;
@@ -187,6 +187,8 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Bmilrv<TW, TH> {
 impl<const TW: usize, const TH: usize> Errands<TW, TH> for Bmilrv<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Persist<TW, TH> for Bmilrv<TW, TH> {}
+
+impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Bmilrv<TW, TH> {}
 
 impl<const TW: usize, const TH: usize> Inspect<TW, TH> for Bmilrv<TW, TH> {
     fn work(&self) -> u32 {

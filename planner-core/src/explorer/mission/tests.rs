@@ -313,6 +313,8 @@ fn a_role_whose_way_is_longer_in_one_body_than_in_the_other_comes_home() {
         },
         seed: 3675672467904345921,
         energy: None,
+        kept_out: [].into(),
+        kept_from: 0,
     };
     let ended = run(&scene, 10_000);
     let role = |id| ended.robots.iter().find(|robot| robot.role.rank == id);

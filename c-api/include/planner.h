@@ -417,6 +417,18 @@ PlannerResult planner_observe_scan(Planner *planner,
                                    const PlannerBeam *beams,
                                    size_t count);
 
+// As `planner_observe_scan`, for a sensor that reaches more than 15 cells: its beams end at
+// 31. Of what lies more than 15 cells away each way, only cells of which nothing is known
+// count.
+//
+// Stack: 8448 bytes.
+PlannerResult planner_observe_long_scan(Planner *planner,
+                                        const PlannerPose *pose,
+                                        float max_range,
+                                        float tolerance,
+                                        const PlannerBeam *beams,
+                                        size_t count);
+
 // Takes in cells that were seen from the cell `centre`, where the robot stands and
 // which is free. Leave out the cells of which nothing was seen. `planner_observe_scan`
 // says what looks must show.

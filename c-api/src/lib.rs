@@ -163,7 +163,7 @@ pub extern "C" fn planner_observe_scan(
 /// 31. Of what lies more than 15 cells away each way, only cells of which nothing is known
 /// count.
 ///
-/// Stack: 0 bytes.
+/// Stack: 8448 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_observe_long_scan(
     planner: *mut Planner,

@@ -82,8 +82,9 @@ impl Scenario {
                     range: self.range,
                 });
             }
-            if self.conditions.trouble.has_errors() {
-                let expected = format!("1 to {} cells where looks err", sight::MAX_RADIUS);
+            let is_off = |motion: &Motion| motion.slip > 0.0 || motion.odometry_error > 0.0;
+            if self.conditions.trouble.has_errors() || self.motion.as_ref().is_some_and(is_off) {
+                let expected = format!("1 to {} cells where looks or poses err", sight::MAX_RADIUS);
                 return Err(ScenarioError::setting("range", self.range, expected));
             }
         }

@@ -369,11 +369,12 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
         if other.has_exchanged {
             return Meeting::Refused(Motion::Held);
         }
-        match role::exchange(&mine, robot.position, &theirs, other.position) {
+        let exchanged = role::exchange(&mine, robot.position, &theirs, other.position);
+        robot.planner.join(other.planner.map(), &self.all_tiles);
+        other.planner.join(robot.planner.map(), &self.all_tiles);
+        match exchanged {
             None => Meeting::Refused(Motion::Held),
             Some((for_robot, for_other)) => {
-                robot.planner.join(other.planner.map(), &self.all_tiles);
-                other.planner.join(robot.planner.map(), &self.all_tiles);
                 robot.planner.adopt(for_robot);
                 other.planner.adopt(for_other);
                 robot.has_exchanged = true;

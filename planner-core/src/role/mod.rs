@@ -173,7 +173,8 @@ impl Role {
 ///    where the two bodies keep out of different cells: what is done for one is not for the
 ///    other.
 ///
-/// The bodies then join each other's maps, and neither role acts again in this tick.
+/// The bodies join each other's maps, whatever comes of it: who waits may learn what makes
+/// it go on. After an exchange neither role acts again in this tick.
 pub fn exchange(mine: &Role, here: Cell, theirs: &Role, there: Cell) -> Option<(Role, Role)> {
     let is_elsewhere = mine.kept_out != theirs.kept_out;
     if theirs.has_arrived || mine.lost >= MOST_LOST || is_elsewhere {

@@ -526,12 +526,13 @@ pub(in crate::explorer) fn run(scene: &Scene, limit: u32) -> Ended {
                                 robots[i].report(Motion::Held);
                                 continue;
                             }
-                            match exchange(&mine, at[i], &theirs, at[j]) {
+                            let exchanged = exchange(&mine, at[i], &theirs, at[j]);
+                            let (a, b) = (robots[i].map().clone(), robots[j].map().clone());
+                            robots[i].join(&b, &all);
+                            robots[j].join(&a, &all);
+                            match exchanged {
                                 None => robots[i].report(Motion::Held),
                                 Some((here, there)) => {
-                                    let (a, b) = (robots[i].map().clone(), robots[j].map().clone());
-                                    robots[i].join(&b, &all);
-                                    robots[j].join(&a, &all);
                                     robots[i].adopt(here);
                                     robots[j].adopt(there);
                                     acted.extend([mine.rank(), theirs.rank()]);

@@ -200,7 +200,9 @@ mod tests {
                     let is_blocked = |cell| !world.is_free(cell) || more.contains(&cell);
                     let shown = lines(range).look(&obstacles, from, more);
                     assert_eq!(shown, sight::look_far(from, range, is_blocked));
-                    assert_eq!(shown.near(), sight::look(from, range, is_blocked));
+                    if range <= sight::MAX_RADIUS {
+                        assert_eq!(shown.near(), sight::look(from, range, is_blocked));
+                    }
                 }
             }
         }

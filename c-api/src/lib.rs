@@ -149,11 +149,7 @@ pub extern "C" fn planner_observe_scan(
     answer(|| {
         let robot = robot(planner)?;
         let pose = input(pose)?;
-        let sensor = RangeSensor {
-            max_range,
-            tolerance,
-        };
-        let scan = read_scan(pose, sensor, inputs(beams, count)?);
+        let scan = read_scan(pose, max_range, tolerance, inputs(beams, count)?);
         let sighting = or_astray(scan.sighting(), pose)?;
         observe(&mut robot.explorer, &sighting)
     })
@@ -176,11 +172,7 @@ pub extern "C" fn planner_observe_long_scan(
     answer(|| {
         let robot = robot(planner)?;
         let pose = input(pose)?;
-        let sensor = RangeSensor {
-            max_range,
-            tolerance,
-        };
-        let scan = read_scan(pose, sensor, inputs(beams, count)?);
+        let scan = read_scan(pose, max_range, tolerance, inputs(beams, count)?);
         let look = or_astray(scan.long_sighting(), pose)?;
         observe(&mut robot.explorer, &look.near())?;
         for (at, free, blocked) in look.far_tiles() {
@@ -395,12 +387,16 @@ pub extern "C" fn planner_shut(
 
 fn read_scan(
     pose: &PlannerPose,
-    sensor: RangeSensor,
+    max_range: f32,
+    tolerance: f32,
     beams: &[PlannerBeam],
 ) -> RangeScan<impl Iterator<Item = Beam>> {
     RangeScan {
         pose: pose.into(),
-        sensor,
+        sensor: RangeSensor {
+            max_range,
+            tolerance,
+        },
         beams: beams.iter().filter_map(PlannerBeam::read),
     }
 }

@@ -33,10 +33,7 @@ impl<W: Write + Seek> Recording<W> {
     /// # Errors
     /// It cannot be written.
     pub fn new(to: W) -> Result<Self, RecordingError> {
-        let options = WriteOptions::new()
-            .profile("ros2")
-            .library("ros-messages")
-            .compression(None);
+        let options = WriteOptions::new().profile("ros2").compression(None);
         Ok(Self {
             writer: options.create(to)?,
             channels: BTreeMap::new(),

@@ -87,7 +87,14 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             .motion
             .map(|motion| Drivers::new(motion, rules.clearance, are_solid, rules.seed, starts));
         Self {
-            senses: Senses::new(sensor, &rules.faults, rules.trouble, rules.seed, starts),
+            senses: Senses::new(
+                sensor,
+                &rules.faults,
+                rules.trouble,
+                rules.seed,
+                starts,
+                rules.clearance,
+            ),
             medium,
             rules,
             build,

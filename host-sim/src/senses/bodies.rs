@@ -1,6 +1,7 @@
 //! What stands in a world for a while: people, shut doors, robots where robots see each
 //! other, and what the user puts there.
 
+use planner_core::explorer::body_cells;
 use planner_core::{Cell, Direction, RobotId};
 
 use crate::dice::Lot;
@@ -31,6 +32,8 @@ pub(super) struct Bodies {
     robots: Vec<Cell>,
     /// The same in the next tick.
     robots_next: Vec<Cell>,
+    /// Cells that they reach beyond their own.
+    clearance: u8,
     faults: Faults,
     tick: u32,
 }
@@ -68,6 +71,7 @@ impl Bodies {
         faults: &Faults,
         world: &World,
         starts: &[Cell],
+        clearance: u8,
     ) -> Self {
         let lot = Lot::new(seed);
         let robots = match trouble.see_robots {
@@ -81,6 +85,7 @@ impl Bodies {
             shut: Vec::new(),
             robots_next: robots.clone(),
             robots,
+            clearance,
             faults: faults.clone(),
             tick: 0,
         };
@@ -155,7 +160,7 @@ impl Bodies {
             .iter()
             .zip(0u8..)
             .filter(move |(_, other)| usize::from(*other) != robot && has_come(*other));
-        let others = others.map(|(&at, _)| at);
+        let others = others.flat_map(|(&at, _)| body_cells(self.clearance, at));
         self.people().chain(self.shut.iter().copied()).chain(others)
     }
 }
@@ -224,7 +229,7 @@ mod tests {
     }
 
     fn bodies(trouble: Trouble, faults: &Faults) -> Bodies {
-        Bodies::new(&trouble, 3, faults, &world(), &STARTS)
+        Bodies::new(&trouble, 3, faults, &world(), &STARTS, 0)
     }
 
     #[test]

@@ -44,7 +44,8 @@ impl Senses {
             seed,
             ..
         } = &scenario.conditions;
-        Self::new(sensor, faults, *trouble, *seed, &scenario.starts)
+        let starts = &scenario.starts;
+        Self::new(sensor, faults, *trouble, *seed, starts, scenario.clearance)
     }
 
     pub(crate) fn new(
@@ -53,11 +54,12 @@ impl Senses {
         trouble: Trouble,
         seed: u64,
         starts: &[Cell],
+        clearance: u8,
     ) -> Self {
         let world = sensor.world();
         let extent = world.extent();
         Self {
-            bodies: Bodies::new(&trouble, seed, faults, world, starts),
+            bodies: Bodies::new(&trouble, seed, faults, world, starts, clearance),
             errors: Errors::new(trouble, seed, sensor.range(), extent, starts.len()),
             faults: faults.clone(),
             headings: vec![Direction::East; starts.len()],
@@ -234,7 +236,7 @@ mod tests {
             }],
             ..Faults::default()
         };
-        let mut senses = Senses::new(sensor, &faults, Trouble::default(), 1, &[at; 2]);
+        let mut senses = Senses::new(sensor, &faults, Trouble::default(), 1, &[at; 2], 0);
         for tick in 0..10 {
             senses.begin(tick);
             for robot in 0..2 {

@@ -50,6 +50,16 @@ fn reach_in(clearance: u8, dy: i16) -> i16 {
     i16::from(reach.copied().unwrap_or(0))
 }
 
+/// How far a body reaches in a row that is somewhere within a step.
+pub(super) fn swept_reach(clearance: u8, dy: i16) -> i16 {
+    let (near, last) = (dy.abs(), i16::from(clearance));
+    let beside = reach_in(clearance, near - 1);
+    match near <= last {
+        true => (reach_in(clearance, near) + 1).max(beside),
+        false => beside,
+    }
+}
+
 /// The next cell of a disc.
 struct BodyCells {
     clearance: u8,

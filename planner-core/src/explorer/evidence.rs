@@ -46,8 +46,10 @@ pub struct SensorModel {
     pub flip_range: u8,
     /// The same for cells on which somebody has stood.
     pub visited_range: u8,
-    /// Whether the sensor sees other robots: what is blocked on and beside the place of a
-    /// robot that was heard just now is then left out of a look.
+    /// Whether the sensor sees other robots: what is blocked within a step of the body of a
+    /// robot that was heard just now, or has stopped there, is then left out of a look. In a
+    /// look that the robot asked for that holds for known cells alone, so that a robot that
+    /// is only pretended hides no wall for long.
     pub sees_robots: bool,
 }
 
@@ -225,8 +227,8 @@ impl Evidence {
     }
 
     /// Takes in what was seen from a cell of the extent; `purpose` says what the robot
-    /// stands there for, `hidden` which cells of a tile are left out
-    /// where they were seen blocked. Work: at most 25 tiles, each with its four
+    /// stands there for, `bodies` in which cells of a tile other robots may be, which a
+    /// sensor that sees them leaves out. Work: at most 25 tiles, each with its four
     /// neighbours.
     pub(super) fn observe<const TW: usize, const TH: usize>(
         &mut self,
@@ -234,7 +236,7 @@ impl Evidence {
         sighting: &Sighting,
         model: &SensorModel,
         purpose: Purpose,
-        hidden: impl Fn(TileIndex) -> u64,
+        bodies: impl Fn(TileIndex) -> u64,
     ) -> Learnt {
         let centre = sighting.centre();
         self.follow(centre);
@@ -261,8 +263,14 @@ impl Evidence {
             let minded = !map.kept_out(at);
             let free = free & minded;
             blocked &= minded;
-            if blocked != 0 {
-                blocked &= !hidden(at);
+            if model.sees_robots && blocked != 0 {
+                let mut hidden = bodies(at);
+                if purpose != Purpose::None {
+                    // Only what is known: a robot that is only pretended hides nothing for
+                    // long.
+                    hidden &= map.tile(at).known();
+                }
+                blocked &= !hidden;
             }
             if free | blocked == 0 {
                 continue;

@@ -2,8 +2,9 @@
 
 use super::Explorer;
 use super::ahead::{MOST_WAITS, Verdict};
+use super::body::body_cells;
 use super::evidence::{Purpose, Votes};
-use crate::cell::Direction;
+use crate::cell::{Cell, Direction};
 use crate::map::Learnt;
 use crate::robot::Wait;
 use crate::sight::Sighting;
@@ -17,14 +18,11 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     pub(super) fn look_around(&mut self, sighting: &Sighting) -> Learnt {
         self.ahead.look(sighting, self.around.clearance);
         let purpose = self.purpose();
-        // A look for its own sake is taken as it is: a robot that is only pretended hides
-        // nothing for long.
-        let (now, others) = (self.around.now, &self.others);
-        let hides = self.config.sensor.sees_robots && purpose == Purpose::None;
-        let hidden = |at: TileIndex| if hides { others.bodies(at, now) } else { 0 };
-        let map = &mut self.around.map;
-        self.evidence
-            .observe(map, sighting, &self.config.sensor, purpose, hidden)
+        let (around, others) = (&mut self.around, &self.others);
+        let (clearance, now) = (around.clearance, around.now);
+        let bodies = |at: TileIndex| others.bodies(at, clearance, now);
+        let (map, model) = (&mut around.map, &self.config.sensor);
+        self.evidence.observe(map, sighting, model, purpose, bodies)
     }
 
     /// What the robot stands still for.
@@ -94,8 +92,30 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     pub(super) fn vetoes(&mut self, step: Direction) -> bool {
         let verdict = self.ahead.check(step, self.errs_by_place());
         if verdict == Verdict::Refused {
-            self.refuse(self.around.position.step(step), false);
+            let next = self.around.position.step(step);
+            let by_robot = body_cells(self.around.clearance, next).any(|cell| self.is_body(cell));
+            self.refuse(next, by_robot);
         }
         verdict != Verdict::Go
+    }
+
+    /// Whether what a sensor sees in a cell may be another robot.
+    fn is_body(&self, cell: Cell) -> bool {
+        let (around, sees_robots) = (&self.around, self.config.sensor.sees_robots);
+        let is_one = |(at, bit)| self.others.bodies(at, around.clearance, around.now) & bit != 0;
+        sees_robots && TileIndex::of(cell).is_some_and(is_one)
+    }
+
+    /// What a look shows blocked in a tile beyond the near window, without other robots.
+    pub(super) fn without_bodies(&self, at: TileIndex, blocked: u64) -> u64 {
+        match self.config.sensor.sees_robots && blocked != 0 {
+            true => {
+                blocked
+                    & !self
+                        .others
+                        .bodies(at, self.around.clearance, self.around.now)
+            }
+            false => blocked,
+        }
     }
 }

@@ -390,7 +390,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// Makes the next step of the plan, or waits.
     fn act(&mut self) -> Action {
         match self.next_step() {
-            Some(step) if self.vetoes(step) || self.keeps_apart(step) => {
+            Some(step) if self.keeps_apart(step) || self.vetoes(step) => {
                 self.wait(Wait::Obstructed)
             }
             Some(step) => {
@@ -601,6 +601,7 @@ impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Explorer<TW, TH> {
         if self.is_astray {
             return Learnt::default();
         }
+        let blocked = self.without_bodies(at, blocked);
         let wall = self.config.sensor.far_wall();
         let learnt = self.around.map.observe_far(at, free, blocked, wall);
         self.others.purse.saw(learnt.cells);

@@ -3,7 +3,7 @@
 
 use heapless::Vec;
 
-use super::body::bodies_touch;
+use super::body::{bodies_touch, swept_reach};
 use super::purse::Purse;
 use crate::cell::{Cell, Direction};
 use crate::list;
@@ -29,20 +29,33 @@ impl Other {
         now.saturating_sub(self.heard_at) <= 1
     }
 
-    /// The cells of a tile in which a sensor may have seen the robot a moment ago: its own,
-    /// and those a step away.
-    fn body(&self, at: TileIndex, now: u32) -> u64 {
-        let tiles = |of: i16, tile: u8| ((of >> 3) - i16::from(tile)).unsigned_abs();
-        let is_far = tiles(self.position.x, at.x).max(tiles(self.position.y, at.y)) > 1;
-        if is_far || now.saturating_sub(self.heard_at) > 2 {
+    /// The cells of a tile in which a sensor may have seen the robot: its body, and that a
+    /// step away. One that has stopped is still there. Work: a row of the body at a time.
+    fn body(&self, at: TileIndex, clearance: u8, now: u32) -> u64 {
+        let distance = |of: i16, tile: u8| ((of >> 3) - i16::from(tile)).unsigned_abs();
+        let is_far = distance(self.position.x, at.x).max(distance(self.position.y, at.y)) > 1;
+        let is_old = !self.has_stopped && now.saturating_sub(self.heard_at) > 2;
+        if is_far || is_old {
             return 0;
         }
-        let sides = Direction::ALL.map(|side| self.position.step(side));
-        let cells = sides.into_iter().chain([self.position]);
+        // Column and row in the tile, -8 to 15.
+        let (x, y) = (
+            self.position.x - i16::from(at.x) * 8,
+            self.position.y - i16::from(at.y) * 8,
+        );
+        let last = i16::from(clearance) + 1;
+        let mut cells = 0;
+        for dy in -last..=last {
+            let row = y + dy;
+            if !(0..8).contains(&row) {
+                continue;
+            }
+            let reach = swept_reach(clearance, dy);
+            // Eight columns west of the tile's first.
+            let wide = ((2u32 << (2 * reach)) - 1) << (x - reach + 12).unsigned_abs();
+            cells |= u64::from(wide >> 12 & 0xff) << (8 * row.unsigned_abs());
+        }
         cells
-            .filter_map(TileIndex::of)
-            .filter(|(tile, _)| *tile == at)
-            .fold(0, |cells, (_, bit)| cells | bit)
     }
 
     /// Where the robot is and where it is going: frontiers beside either are its own.
@@ -130,12 +143,12 @@ impl Others {
         self.heard().filter(|_| !self.purse.is_empty())
     }
 
-    /// The cells of a tile in which robots may be seen that were heard just now. Work: the
-    /// list once.
-    pub(crate) fn bodies(&self, at: TileIndex, now: u32) -> u64 {
-        self.list
-            .iter()
-            .fold(0, |cells, other| cells | other.body(at, now))
+    /// The cells of a tile in which robots may be seen that were heard just now, or that have
+    /// stopped. Work: the list once.
+    #[inline(never)] // most robots see no others
+    pub(crate) fn bodies(&self, at: TileIndex, clearance: u8, now: u32) -> u64 {
+        let bodies = self.list.iter().map(|other| other.body(at, clearance, now));
+        bodies.fold(0, |cells, body| cells | body)
     }
 
     /// Whether the robot knows where every other one went that it has heard of.
@@ -179,6 +192,7 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
+    use crate::explorer::body::{MAX_CLEARANCE, body_cells};
 
     /// The same by the words of the rule: id, stopped, position.
     fn remember(list: &mut Vec<(u8, bool, Cell)>, heard: (u8, bool, Cell), own: Cell) {
@@ -197,6 +211,49 @@ mod tests {
         }
         list.push(heard);
         list.sort_by_key(|of| of.0);
+    }
+
+    #[test]
+    fn a_body_is_seen_where_it_is_and_a_step_away_and_stays_where_it_stopped() {
+        let (clearances, place) = (0..=MAX_CLEARANCE, -5..13);
+        let places = place
+            .clone()
+            .flat_map(|y| place.clone().map(move |x| Cell::new(x, y)));
+        for (clearance, position) in
+            clearances.flat_map(|of| places.clone().map(move |at| (of, at)))
+        {
+            let mut others = Others::new();
+            let hear = |others: &mut Others, stopped| {
+                let activity = Activity::stopped_if(stopped);
+                let status = Status {
+                    position,
+                    goal: None,
+                    activity,
+                };
+                others.hear(RobotId(1), status, Cell::new(0, 0), 10);
+            };
+            hear(&mut others, false);
+            let places = Direction::ALL.map(|side| position.step(side));
+            let places = places.into_iter().chain([position]);
+            let mut seen = 0;
+            for (tile, bit) in places
+                .flat_map(|at| body_cells(clearance, at))
+                .filter_map(TileIndex::of)
+            {
+                if tile == TileIndex::new(0, 0) {
+                    seen |= bit;
+                }
+            }
+            let at = TileIndex::new(0, 0);
+            assert_eq!(
+                others.bodies(at, clearance, 12),
+                seen,
+                "{clearance} at {position}"
+            );
+            assert_eq!(others.bodies(at, clearance, 13), 0);
+            hear(&mut others, true);
+            assert_eq!(others.bodies(at, clearance, 13), seen);
+        }
     }
 
     proptest! {

@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::cell::Extent;
-use crate::explorer::Config;
 use crate::explorer::tests::scene::kept;
+use crate::explorer::{Config, SensorModel};
 use crate::planner::{Contact, Errands, Planner};
 use crate::robot::{Action, Motion, RobotId, Stop, Wait};
 use crate::sight::look;
@@ -25,6 +25,8 @@ struct Place {
     clearance: u8,
     radius: u8,
     slice: u32,
+    /// Whether robots see each other.
+    sees_robots: bool,
 }
 
 impl Place {
@@ -54,12 +56,24 @@ impl Place {
 }
 
 fn place() -> impl Strategy<Value = Place> {
-    let sizes = (5u16..=24, 5u16..=24, 1u8..=3, 0u8..8, 1u32..100_000);
-    sizes.prop_flat_map(|(width, height, clearance, more, slice)| {
+    let sizes = (
+        5u16..=24,
+        5u16..=24,
+        1u8..=3,
+        0u8..8,
+        1u32..100_000,
+        any::<bool>(),
+    );
+    sizes.prop_flat_map(|(width, height, clearance, more, slice, sees_robots)| {
+        let (width, height) = (
+            width.max(2 * u16::from(clearance) + 1),
+            height.max(2 * u16::from(clearance) + 1),
+        );
+        let middle = Cell::new(width as i16 / 2, height as i16 / 2);
         let cell = move || (0..width as i16, 0..height as i16).prop_map(|(x, y)| Cell::new(x, y));
         let most = usize::from(width) * usize::from(height) / 12;
         let walls = prop::collection::vec(cell(), 0..=most);
-        let starts = prop::collection::vec(cell(), 1..=3);
+        let starts = prop::collection::vec(cell(), 0..=2);
         let kept_out = prop_oneof![Just(0), 0..=most];
         let kept_out = kept_out.prop_flat_map(move |most| prop::collection::vec(cell(), 0..=most));
         (walls, starts, kept_out).prop_map(move |(walls, wished, kept_out)| {
@@ -71,7 +85,10 @@ fn place() -> impl Strategy<Value = Place> {
                 clearance,
                 radius: clearance + 2 + more,
                 slice: slice.max(400),
+                sees_robots,
             };
+            // There is room in the middle, if it is not taken.
+            let wished = wished.into_iter().chain([middle]);
             for start in wished {
                 // Room is made, and who has none does not take part.
                 let room: Vec<_> = body_cells(clearance, start).collect();
@@ -92,6 +109,10 @@ fn place() -> impl Strategy<Value = Place> {
 fn run(place: &Place) -> Result<(Vec<Small>, Vec<Stop>), TestCaseError> {
     let config = Config {
         clearance: place.clearance,
+        sensor: SensorModel {
+            sees_robots: place.sees_robots,
+            ..SensorModel::truthful()
+        },
         slice: place.slice,
         ..Config::new()
     };
@@ -103,8 +124,12 @@ fn run(place: &Place) -> Result<(Vec<Small>, Vec<Stop>), TestCaseError> {
     }
     let all = TileSet::full();
     for _ in 0..60_000 {
-        for (robot, &at) in robots.iter_mut().zip(&at) {
-            robot.observe(&look(at, place.radius, |cell| place.is_blocked(cell)));
+        for (i, robot) in robots.iter_mut().enumerate() {
+            let others = (0..at.len()).filter(|&j| place.sees_robots && j != i);
+            let bodies = others.flat_map(|j| body_cells(place.clearance, at[j]));
+            let bodies: Vec<_> = bodies.collect();
+            let is_blocked = |cell| place.is_blocked(cell) || bodies.contains(&cell);
+            robot.observe(&look(at[i], place.radius, is_blocked));
         }
         let told: Vec<_> = robots
             .iter()
@@ -149,7 +174,6 @@ fn run(place: &Place) -> Result<(Vec<Small>, Vec<Stop>), TestCaseError> {
 proptest! {
     #[test]
     fn bodies_touch_nothing_and_sweep_all_that_they_can(place in place()) {
-        prop_assume!(!place.starts.is_empty());
         let (robots, stops) = run(&place)?;
         for ((robot, stop), &start) in robots.iter().zip(stops).zip(&place.starts) {
             if !stop.is_complete() {
@@ -187,6 +211,7 @@ fn what_is_too_narrow_is_seen_and_counted() {
         clearance: 1,
         radius: 9,
         slice: 240_000,
+        sees_robots: false,
     };
     let (robots, stops) = run(&place).unwrap();
     assert_eq!(robots[0].count_narrow_cells(), 6);

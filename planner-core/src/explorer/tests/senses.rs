@@ -161,6 +161,66 @@ fn a_robot_does_not_take_another_for_a_wall() {
     assert!(robot.map().is_obstacle(other));
 }
 
+/// A corridor that another robot stands in: seen from near and from afar, with its body wide
+/// or not, it is no wall, and the stop names it.
+#[test]
+fn a_robot_that_stays_in_the_way_is_no_wall_and_is_named() {
+    for clearance in 0..=1 {
+        let (width, middle) = (22, 1 + i16::from(clearance));
+        let extent = Extent::new(width, 2 * middle as u16 + 1);
+        let config = Config {
+            sensor: SensorModel::lidar(),
+            clearance,
+            ..Config::new()
+        };
+        let start = Cell::new(middle, middle);
+        let mut robot = Small::new(config, RobotId(0), extent, start).unwrap();
+        let other = Cell::new(19 - middle, middle);
+        let status = Status {
+            position: other,
+            goal: None,
+            activity: Activity::Stopped,
+        };
+        let body: Vec<_> = body_cells(clearance, other).collect();
+        let is_wall = |cell: Cell| {
+            let is_inside = 1..width as i16 - 1;
+            !is_inside.contains(&cell.x) || !(1..2 * middle).contains(&cell.y)
+        };
+        let is_blocked = |cell: Cell| is_wall(cell) || body.contains(&cell);
+        let mut here = start;
+        robot.hear(RobotId(1), status);
+        robot.observe_long(&crate::sight::look_far(here, 20, is_blocked));
+        assert!(body.iter().all(|cell| !robot.map().is_doubtful(*cell)));
+        // It tells where it stands, as frames do.
+        let mut told = Map::<3, 3>::new(extent).unwrap();
+        for (at, bit) in body.iter().filter_map(|cell| TileIndex::of(*cell)) {
+            told.join_tile(at, crate::map::Tile::seen(bit, 0));
+        }
+        robot.join(&told, &TileSet::full());
+        let mut ticks = 0..5_000;
+        let stop = ticks.find_map(|_| {
+            robot.hear(RobotId(1), status);
+            robot.observe(&look(here, 5, is_blocked));
+            match robot.tick() {
+                Action::Move(step) => {
+                    let is_free = |cell| !is_blocked(cell);
+                    assert!(body_cells(clearance, here.step(step)).all(is_free));
+                    here = here.step(step);
+                    robot.report(Motion::Moved);
+                }
+                Action::Wait => {}
+                Action::Stop(stop) => return Some(stop),
+            }
+            None
+        });
+        assert!(
+            matches!(stop, Some(Stop::Unseen { .. } | Stop::Held { .. })),
+            "{stop:?}"
+        );
+        assert!(body.iter().all(|cell| !robot.map().is_obstacle(*cell)));
+    }
+}
+
 /// Walls that somebody forged around a robot, on every cell that it sees free.
 fn walled_in(robot: &mut Small, seen: &Sighting) {
     let mut told = Map::<3, 3>::new(robot.map().extent()).unwrap();

@@ -47,6 +47,39 @@ fn rewards_add_up_and_flights_are_safe() {
     }
 }
 
+/// A least altitude costs what less is seen from it, and no flights that rising ground
+/// forbids: as much of the range as it leaves is used.
+#[test]
+fn least_altitudes_forbid_no_flights() {
+    let terrains: Vec<_> = (0..4)
+        .map(|seed| Terrain::gaussian(910_001 + seed, 60))
+        .collect();
+    for planner in ALL {
+        for range in [6.0, 8.0, 12.0] {
+            let ticks = |min_altitude: f32| {
+                let ticks = (0..).zip(&terrains).map(|(seed, terrain)| {
+                    let mut scenario = Scenario::new(planner, 4, seed);
+                    scenario.limits.range = range;
+                    scenario.limits.min_altitude = min_altitude;
+                    run(terrain, &scenario).unwrap().ticks_to(1.0).unwrap()
+                });
+                f64::from(ticks.sum::<u32>())
+            };
+            let unhindered = ticks(0.0);
+            for altitude in [2.0, 3.0, 4.0, 6.0].into_iter().filter(|it| *it < range) {
+                let factor = ticks(altitude) / unhindered;
+                // Radius of what is seen of flat ground from there.
+                let radius = |z: f32| f64::from((range * range - z * z).sqrt());
+                let fair = radius(0.0) / radius(altitude);
+                assert!(
+                    factor < 1.3 * fair * fair,
+                    "{planner}, range {range}, altitude {altitude}: {factor:.2}"
+                );
+            }
+        }
+    }
+}
+
 /// By radio alone robots come to nearly as good an exploration, and never send more than
 /// they may.
 #[test]

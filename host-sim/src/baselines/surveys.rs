@@ -11,6 +11,9 @@ use planner_core::{Action, Cell, Extent, Point, RobotId, Stop};
 /// do.
 const GIVE_UP: u16 = 1000;
 
+/// Height of flights over ground, as a share of the range.
+const CRUISE: f32 = 0.5;
+
 /// Who chooses the frontier that a [`Follower`] flies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guide {
@@ -85,16 +88,12 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
         };
         self.knowledge.set_goal(target);
         self.knowledge.count_work(work);
-        let Limits {
-            range,
-            min_altitude,
-            ..
-        } = self.knowledge.limits();
+        let limits = self.knowledge.limits();
         // The same liveness guard as the planners have.
         let cruise = if stuck {
-            min_altitude + 0.1
+            limits.min_altitude + 0.1
         } else {
-            min_altitude.max(range / 2.0)
+            limits.cruise(CRUISE)
         };
         target
             .and_then(|target| {

@@ -35,8 +35,8 @@ use heapless::Vec;
 /// Measurements that the local model remembers.
 const HISTORY: usize = 8;
 
-/// Half of a robot's swath is lost at its edges if it flies higher than this share
-/// of its range over ground.
+/// Height over ground at which a robot flies, as a share of its range: half of its swath
+/// is lost at its edges if it flies higher.
 const CRUISE: f32 = 0.36;
 
 /// How a robot chooses among random local steps.
@@ -132,12 +132,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     /// Height over ground at which the robot flies.
     fn cruise(&self) -> f32 {
-        let Limits {
-            range,
-            min_altitude,
-            ..
-        } = self.config.limits;
-        min_altitude.max(CRUISE * range)
+        self.config.limits.cruise(CRUISE)
     }
 
     /// Whether the robot has been near its goal for a while and gained nothing: it

@@ -20,6 +20,9 @@ use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Recovery, SetupError};
 /// that a straight step newly covers, 2Rα.
 const LOCAL_OPTIMUM: f32 = 0.5;
 
+/// Reading: height of flights to a frontier, as a share of the range.
+const CRUISE: f32 = 0.5;
+
 /// Reading: ridge of the fit, per measurement.
 const RIDGE: f32 = 1e-4;
 
@@ -194,18 +197,13 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
             self.knowledge.set_goal(goal);
             self.knowledge.count_work(work);
         }
-        let Limits {
-            range,
-            min_altitude,
-            ..
-        } = self.config.limits;
+        let cruise = self.config.limits.cruise(CRUISE);
         self.knowledge.count_work(29);
         self.knowledge
             .goal()
             .and_then(|goal| {
                 let goal = Point::over(goal, 0.0);
-                self.knowledge
-                    .step_towards(goal, min_altitude.max(range / 2.0))
+                self.knowledge.step_towards(goal, cruise)
             })
             .map_or(Action::Wait, Action::Move)
     }

@@ -44,7 +44,22 @@ pub struct Limits {
     pub separation: f32,
 }
 
+/// What planners fly above the least altitude, in cells: ground that rises between two
+/// columns would forbid flights otherwise.
+const MARGIN: f32 = 0.75;
+
+/// The most of it, as a share of what the range leaves: higher up little is seen.
+const MARGIN_OF_RANGE: f32 = 0.25;
+
 impl Limits {
+    /// Height over ground at which to fly, `share` of the range if the least altitude
+    /// leaves that.
+    pub fn cruise(&self, share: f32) -> f32 {
+        let left = (self.range - self.min_altitude).max(0.0);
+        let margin = MARGIN.min(MARGIN_OF_RANGE * left);
+        (self.min_altitude + margin).max(share * self.range)
+    }
+
     /// All zero: nothing can be flown with them.
     pub(crate) const NONE: Self = Self {
         range: 0.0,

@@ -80,6 +80,25 @@ fn least_altitudes_forbid_no_flights() {
     }
 }
 
+/// What a survey has patience for are flights, not steps: at a quarter of the step it flies
+/// about as far.
+#[test]
+fn short_steps_fly_no_farther() {
+    for planner in [Planner::CoordinatedSurvey, Planner::CoordinatedCubic] {
+        let flown = |step: f32| {
+            let ticks = (0..6).map(|seed| {
+                let mut scenario = Scenario::new(planner, 8, seed);
+                scenario.limits.step = step;
+                let terrain = Terrain::gaussian(seed, 100);
+                run(&terrain, &scenario).unwrap().ticks_to(1.0).unwrap()
+            });
+            f64::from(ticks.sum::<u32>()) * f64::from(step)
+        };
+        let factor = flown(0.5) / flown(2.0);
+        assert!(factor < 1.15, "{planner}: {factor:.2}");
+    }
+}
+
 /// By radio alone robots come to nearly as good an exploration, and never send more than
 /// they may.
 #[test]

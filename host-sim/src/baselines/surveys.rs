@@ -3,13 +3,13 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::surface::Surface;
-use planner_core::survey::{Knowledge, Limits, PATIENCE, Pilot, SetupError};
+use planner_core::survey::{Knowledge, Limits, Pilot, SetupError};
 use planner_core::tile::bits;
 use planner_core::{Action, Cell, Extent, Point, RobotId, Stop};
 
-/// Steps without gain after which a [`Follower`] gives up. The published methods never
-/// do.
-const GIVE_UP: u16 = 1000;
+/// After how many times the planners' [`Limits::patience`] a [`Follower`] gives up. The
+/// published methods never do.
+const GIVE_UP: u16 = 20;
 
 /// Height of flights over ground, as a share of the range.
 const CRUISE: f32 = 0.5;
@@ -67,12 +67,13 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
     }
 
     fn decide(&mut self) -> Action<Point> {
+        let limits = self.knowledge.limits();
         if let Some((_, to)) = self.knowledge.take_refused() {
             self.refused = Some(to.cell());
         } else if self.knowledge.gain() > 0.0 {
             self.refused = None;
         }
-        if self.knowledge.idle() >= GIVE_UP {
+        if self.knowledge.idle() >= limits.patience().saturating_mul(GIVE_UP) {
             let frontiers = self.knowledge.surface().frontiers();
             let at = self.knowledge.unseen_place();
             return self.knowledge.stop(match self.refused {
@@ -80,7 +81,7 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
                 None => Stop::Unseen { frontiers, at },
             });
         }
-        let stuck = self.knowledge.idle() >= PATIENCE;
+        let stuck = self.knowledge.idle() >= limits.patience();
         let (target, work) = if self.guide == Guide::Closest || stuck {
             closest_of_all(&self.knowledge)
         } else {
@@ -88,7 +89,6 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
         };
         self.knowledge.set_goal(target);
         self.knowledge.count_work(work);
-        let limits = self.knowledge.limits();
         // The same liveness guard as the planners have.
         let cruise = if stuck {
             limits.min_altitude + 0.1

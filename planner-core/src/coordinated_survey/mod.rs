@@ -11,9 +11,9 @@
 //! # Why it ends
 //! Pockets, swaths and frontiers are heuristics, and what others say of themselves bends
 //! them: a robot that hears of rivals everywhere leaves everything to them. But all
-//! three serve only as long as something is gained: after [`PATIENCE`] steps in a row
-//! without it, or six near a goal, the recovery decides, which heeds nobody's claims.
-//! The six are forgotten with the next gain too. So the proof in `survey/recovery.rs`
+//! three serve only as long as something is gained: after [`Limits::patience`] steps in a
+//! row without it, or a few near a goal, the recovery decides, which heeds nobody's claims.
+//! The few are forgotten with the next gain too. So the proof in `survey/recovery.rs`
 //! holds here, with its case 1.
 
 mod frontier;
@@ -27,7 +27,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Recovery, SetupError};
+use crate::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
 use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
@@ -51,8 +51,9 @@ pub enum Choice {
     Cubic,
 }
 
-/// Steps without gain near a goal after which the robot looks over its edges.
-const NEAR_PATIENCE: u8 = 6;
+/// Length of flights without gain near a goal after which the robot looks over its edges,
+/// in ranges.
+const NEAR_PATIENCE: f32 = 1.5;
 
 /// What a fleet agrees on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,7 +82,7 @@ pub struct CoordinatedSurvey<const TW: usize, const TH: usize> {
     shortlist: Vec<TileIndex, SHORTLIST>,
     turn: TileIndex,
     /// Steps near a goal since the last gain.
-    stuck: u8,
+    stuck: u16,
     /// Whether the last step was a local one.
     local: bool,
 }
@@ -138,16 +139,18 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     /// Whether the robot has been near its goal for a while and gained nothing: it
     /// hides, behind an edge or on a tower.
     fn is_stuck(&mut self, gain: f32) -> bool {
+        let Limits { range, .. } = self.config.limits;
         let here = self.knowledge.position();
-        let near = self.knowledge.goal().is_none_or(|goal| {
-            here.plan_distance(Point::over(goal, 0.0)) < 0.5 * self.config.limits.range
-        });
+        let near = self
+            .knowledge
+            .goal()
+            .is_none_or(|goal| here.plan_distance(Point::over(goal, 0.0)) < 0.5 * range);
         if gain > 0.0 {
             self.stuck = 0;
         } else if near {
             self.stuck = self.stuck.saturating_add(1);
         }
-        self.stuck >= NEAR_PATIENCE
+        self.stuck >= self.config.limits.steps_of(NEAR_PATIENCE * range, 2, 3_600)
     }
 
     fn fly_to(&mut self, goal: Option<Cell>) -> Option<Action<Point>> {
@@ -188,7 +191,7 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, T
         let gain = self.knowledge.gain();
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let needs_recovery = self.knowledge.idle() >= PATIENCE;
+        let needs_recovery = self.knowledge.idle() >= self.config.limits.patience();
         if self.knowledge.is_blocked() && (!needs_recovery || self.recovery.steps_aside()) {
             self.knowledge.take_refused();
             return self.sidestep();

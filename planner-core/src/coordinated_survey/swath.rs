@@ -24,10 +24,11 @@ const LEAST_GAIN: f32 = 0.11;
 /// steps: their views overlap, and shared out frontiers lead them apart.
 const APART: f32 = 2.0;
 
-/// Steps that a probe looks ahead.
+/// Places that a probe looks at ahead, a quarter of a range apart.
 const LOOKAHEAD: u8 = 4;
+const SPACING: f32 = 0.25;
 
-/// Worth of a step ahead against the one before it.
+/// Worth of a place ahead against the one before it.
 const DISCOUNT: f32 = 0.825;
 
 /// Radius of what a robot is taken to see from cruise height, as a share of R.
@@ -175,16 +176,16 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     #[inline(never)] // what it keeps on the stack goes with it
     fn shown_along(&self, mut vicinity: Vicinity, heading: f32) -> f32 {
         let here = self.knowledge.position();
-        let step = self.config.limits.step;
+        let spacing = SPACING * self.config.limits.range;
         let radius = SIGHT * self.config.limits.range;
         let (sin, cos) = math::sin_cos(heading);
         let (mut value, mut most, mut worth) = (0.0f32, 0.0, 1.0);
         for ahead in 1..=LOOKAHEAD {
-            let distance = f32::from(ahead) * step;
+            let distance = f32::from(ahead) * spacing;
             let place = here.offset(distance * cos, distance * sin, 0.0);
             let shown = vicinity.take_disc(place, radius);
             value += worth * (shown.columns as f32 + RIM * shown.rim as f32);
-            most += worth * 2.0 * radius * step;
+            most += worth * 2.0 * radius * spacing;
             worth *= DISCOUNT;
         }
         value / most

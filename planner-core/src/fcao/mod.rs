@@ -4,7 +4,7 @@
 //! The paper leaves points open: each reading taken here is named where it is applied.
 //!
 //! The paper's robots never stop. Here every step without gain counts, and after
-//! [`PATIENCE`] of them in a row the recovery decides until something is gained: why that
+//! [`Limits::patience`] of them in a row the recovery decides until something is gained: why that
 //! ends, whatever refuses a flight, whatever no look shows and whatever others say, is
 //! proved in `survey/recovery.rs`.
 
@@ -14,7 +14,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, PATIENCE, Pilot, Recovery, SetupError};
+use crate::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -222,7 +222,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Pilot<TW, TH> for Fcao<TW
     fn decide(&mut self) -> Action<Point> {
         self.history
             .push(self.knowledge.position(), self.knowledge.reward());
-        let needs_recovery = self.knowledge.idle() >= PATIENCE;
+        let needs_recovery = self.knowledge.idle() >= self.config.limits.patience();
         if self.knowledge.is_blocked() && (!needs_recovery || self.recovery.steps_aside()) {
             self.knowledge.take_refused();
             return self.wander();

@@ -17,8 +17,6 @@ mod recovery;
 
 pub use knowledge::{Knowledge, SetupError};
 pub use news::MAX_RANGE;
-pub use recovery::PATIENCE;
-
 pub(crate) use recovery::Recovery;
 
 use crate::cell::Cell;
@@ -51,6 +49,9 @@ const MARGIN: f32 = 0.75;
 /// The most of it, as a share of what the range leaves: higher up little is seen.
 const MARGIN_OF_RANGE: f32 = 0.25;
 
+/// Length of flights without gain after which the recovery begins, in ranges.
+const PATIENCE: f32 = 12.5;
+
 impl Limits {
     /// Height over ground at which to fly, `share` of the range if the least altitude
     /// leaves that.
@@ -58,6 +59,17 @@ impl Limits {
         let left = (self.range - self.min_altitude).max(0.0);
         let margin = MARGIN.min(MARGIN_OF_RANGE * left);
         (self.min_altitude + margin).max(share * self.range)
+    }
+
+    /// Steps without gain after which the recovery begins: those of a flight of 12.5 R, 4
+    /// to 30,000.
+    pub fn patience(&self) -> u16 {
+        self.steps_of(PATIENCE * self.range, 4, 30_000)
+    }
+
+    /// Whole steps that a flight of `length` cells takes, within bounds.
+    pub(crate) fn steps_of(&self, length: f32, least: u16, most: u16) -> u16 {
+        ((length / self.step) as u16).clamp(least, most)
     }
 
     /// All zero: nothing can be flown with them.

@@ -25,7 +25,7 @@
 //! the robot stops. Nothing that other robots say of themselves has part in it: it only
 //! forbids flights, and each of the cases counts those.
 //! 1. *Planners.* A step without a new column has no gain, and a step with gain ends
-//!    the spell. So after [`PATIENCE`] steps every further one is the recovery's, but for
+//!    the spell. So after [`Limits::patience`](super::Limits::patience) steps every further one is the recovery's, but for
 //!    those of case 2 and [`BUMPS`] steps aside.
 //! 2. *A sensor that shows nothing where it must*: the robot hovers, and stops after a
 //!    hundred such looks in a row. Any other look that shows something known brings it
@@ -54,9 +54,6 @@ use crate::robot::{Action, Stop, Wait};
 use crate::surface::Columns;
 use crate::tile::{TileIndex, Tiles, bits};
 use way::Way;
-
-/// Steps without gain after which the recovery begins.
-pub const PATIENCE: u16 = 50;
 
 /// Height over the least altitude at which it flies.
 const MARGIN: f32 = 0.1;

@@ -41,6 +41,39 @@ fn published() -> Robot {
     std::boxed::Box::new(Fcao::<2, 2>::new(config, RobotId(0), EXTENT).unwrap())
 }
 
+#[test]
+fn patience_is_a_distance_within_bounds() {
+    let patience = |range, step| {
+        Limits {
+            range,
+            step,
+            ..LIMITS
+        }
+        .patience()
+    };
+    assert_eq!(patience(8.0, 2.0), 50);
+    assert_eq!(patience(8.0, 0.5), 200);
+    assert_eq!(patience(12.0, 1.0), 150);
+    assert_eq!(patience(8.0, 1000.0), 4);
+    assert_eq!(patience(12.0, 1e-9), 30_000);
+}
+
+#[test]
+fn a_margin_leaves_most_of_the_range() {
+    let cruise = |range, min_altitude| {
+        Limits {
+            range,
+            min_altitude,
+            ..LIMITS
+        }
+        .cruise(0.36)
+    };
+    assert_eq!(cruise(8.0, 2.0), 2.88);
+    assert_eq!(cruise(8.0, 4.0), 4.75);
+    assert_eq!(cruise(6.0, 4.0), 4.5);
+    assert_eq!(cruise(6.0, 9.0), 9.0);
+}
+
 /// A surface, and what is wrong with it.
 #[derive(Clone, Debug, Default)]
 struct World {

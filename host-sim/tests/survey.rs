@@ -10,16 +10,18 @@ use host_sim::scene::Scene;
 use host_sim::scene::octree::OcTree;
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
-use planner_core::{Cell, Direction, Extent, Point, Reason};
+use planner_core::{Cell, Direction, Extent, Point, Reason, Stop};
 use proptest::prelude::*;
 
-const ALL: [Planner; 6] = [
+const ALL: [Planner; 8] = [
     Planner::CoordinatedSurvey,
     Planner::CoordinatedCubic,
     Planner::Fcao,
     Planner::ClosestFrontier,
     Planner::Greedy,
     Planner::GreedyUnique,
+    Planner::GreedyInOrder,
+    Planner::ClosestUntilReached,
 ];
 
 const OWN: [Planner; 3] = [
@@ -268,6 +270,44 @@ fn voxels_are_shared_out() {
     };
     let (alone, together) = (ticks(1), ticks(3));
     assert!(2 * together < alone, "{together} {alone}");
+}
+
+/// In towns, and where ground is higher than the ceiling, every planner ends, and says
+/// truly whether everything was seen.
+#[test]
+fn every_survey_of_a_town_ends() {
+    let tower = Cell::new(20, 14);
+    let pierced = Terrain::from_fn(Extent::new(36, 36), |cell| {
+        let is_tower = (cell.x - tower.x).abs() < 2 && (cell.y - tower.y).abs() < 2;
+        Height(if is_tower { 200 } else { 0 })
+    });
+    for planner in ALL {
+        for (seed, terrain) in [
+            (1, &Terrain::urban(1, 40)),
+            (2, &Terrain::urban(2, 40)),
+            (3, &pierced),
+        ] {
+            let trace = run(terrain, &Scenario::new(planner, 3, seed)).unwrap();
+            assert!(trace.all_stopped, "{planner} on {}", terrain.name());
+            assert_eq!(
+                trace.complete(),
+                terrain.name() != pierced.name(),
+                "{planner}"
+            );
+            for stop in trace.stops.iter().flatten() {
+                let at = match stop {
+                    Stop::Complete => {
+                        assert!(trace.complete(), "{planner}");
+                        continue;
+                    }
+                    Stop::Unseen { at, .. } | Stop::Held { at, .. } => at,
+                    stop => panic!("{planner}: {stop:?}"),
+                };
+                let away = at.distance_squared(tower);
+                assert!(!trace.complete() && away <= 18, "{planner}: {stop:?}");
+            }
+        }
+    }
 }
 
 /// Two robots map a town of heights, and OctoMap's own tool reads what they mapped.

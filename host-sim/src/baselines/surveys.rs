@@ -3,34 +3,40 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::surface::Surface;
-use planner_core::survey::{Knowledge, Limits, Pilot, SetupError};
+use planner_core::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
 use planner_core::tile::bits;
-use planner_core::{Action, Cell, Extent, Point, RobotId, Stop};
-
-/// After how many times the planners' [`Limits::patience`] a [`Follower`] gives up. The
-/// published methods never do.
-const GIVE_UP: u16 = 20;
+use planner_core::{Action, Cell, Extent, Point, RobotId};
 
 /// Height of flights over ground, as a share of the range.
 const CRUISE: f32 = 0.5;
+
+/// A robot nearer to its frontier than this, in cells, has reached it.
+const REACHED: f32 = 0.5;
 
 /// Who chooses the frontier that a [`Follower`] flies to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guide {
     /// The robot: the closest frontier, chosen anew in every step.
     Closest,
+    /// The robot: the closest frontier, and the next one when it has reached that
+    /// [Yamauchi1997].
+    ClosestUntilReached,
     /// A centre that knows the map and all robots: [`assign`].
     Centre,
 }
 
 /// A robot that flies to one frontier after the other.
+///
+/// The published methods know no end but a complete map. Here the way out of the core's
+/// planners serves them too, so they stop when those would, and for the same reasons.
 #[derive(Clone, Debug)]
 pub struct Follower<const TW: usize, const TH: usize> {
     knowledge: Knowledge<TW, TH>,
+    recovery: Recovery<TW, TH>,
     guide: Guide,
     order: (Option<Cell>, u32),
-    /// Where a flight was refused since the last gain.
-    refused: Option<Cell>,
+    /// The frontier that it is to reach.
+    target: Option<Cell>,
 }
 
 impl<const TW: usize, const TH: usize> Follower<TW, TH> {
@@ -43,17 +49,31 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
         guide: Guide,
     ) -> Result<Self, SetupError> {
         let knowledge = Knowledge::new(extent, limits, link, id)?;
+        let mut recovery = Recovery::vacant();
+        recovery.reset();
         Ok(Self {
             knowledge,
+            recovery,
             guide,
             order: (None, 0),
-            refused: None,
+            target: None,
         })
     }
 
     /// The centre's orders, which cost `work` to find.
     pub fn send_to(&mut self, target: Option<Cell>, work: u32) {
         self.order = (target, work);
+    }
+
+    /// The frontier to fly to, and what it cost to find.
+    fn choose(&self) -> (Option<Cell>, u32) {
+        let here = self.knowledge.position();
+        let is_under_way = |&cell: &Cell| here.plan_distance(Point::over(cell, 0.0)) > REACHED;
+        match (self.guide, self.target.filter(is_under_way)) {
+            (Guide::Centre, _) => self.order,
+            (Guide::ClosestUntilReached, Some(target)) => (Some(target), 1),
+            _ => closest_of_all(&self.knowledge),
+        }
     }
 }
 
@@ -68,39 +88,22 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
 
     fn decide(&mut self) -> Action<Point> {
         let limits = self.knowledge.limits();
-        if let Some((_, to)) = self.knowledge.take_refused() {
-            self.refused = Some(to.cell());
-        } else if self.knowledge.gain() > 0.0 {
-            self.refused = None;
+        if self.knowledge.idle() >= limits.patience() {
+            self.target = None;
+            return self.recovery.tick(&mut self.knowledge);
         }
-        if self.knowledge.idle() >= limits.patience().saturating_mul(GIVE_UP) {
-            let frontiers = self.knowledge.surface().frontiers();
-            let at = self.knowledge.unseen_place();
-            return self.knowledge.stop(match self.refused {
-                Some(at) => Stop::Blocked { frontiers, at },
-                None => Stop::Unseen { frontiers, at },
-            });
-        }
-        let stuck = self.knowledge.idle() >= limits.patience();
-        let (target, work) = if self.guide == Guide::Closest || stuck {
-            closest_of_all(&self.knowledge)
-        } else {
-            self.order
-        };
+        self.knowledge.take_refused();
+        let (target, work) = self.choose();
         self.knowledge.set_goal(target);
         self.knowledge.count_work(work);
-        // The same liveness guard as the planners have.
-        let cruise = if stuck {
-            limits.min_altitude + 0.1
-        } else {
-            limits.cruise(CRUISE)
-        };
-        target
-            .and_then(|target| {
-                self.knowledge
-                    .step_towards(Point::over(target, 0.0), cruise)
-            })
-            .map_or(Action::Wait, Action::Move)
+        let step = target.and_then(|target| {
+            let place = Point::over(target, 0.0);
+            let cruise = limits.cruise(CRUISE);
+            self.knowledge.step_towards(place, cruise)
+        });
+        // What cannot be approached is not waited for.
+        self.target = target.filter(|_| step.is_some());
+        step.map_or(Action::Wait, Action::Move)
     }
 }
 
@@ -122,6 +125,15 @@ impl Rounds {
     }
 }
 
+/// Whom a centre serves first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// The robot and the group that are nearest to each other.
+    NearestPair,
+    /// The robots as they are numbered, each with the nearest group that is left.
+    Robots,
+}
+
 /// The closest frontier of all, and the number of tiles and frontiers looked at, as the
 /// published method does it: its work grows with the map.
 fn closest_of_all<const TW: usize, const TH: usize>(
@@ -139,11 +151,13 @@ fn closest_of_all<const TW: usize, const TH: usize>(
 
 /// The centralised greedy method: frontiers are grouped by leader clustering of
 /// radius `range`, the member nearest to a group's centroid stands for it, and robots
-/// and groups are matched by the smallest distance left, in `rounds`. Also returns the number of distances computed.
+/// and groups are matched by distance, in `order` and `rounds`. Also returns the number of
+/// distances computed.
 pub fn assign<const TW: usize, const TH: usize>(
     surface: &Surface<TW, TH>,
     robots: &[Point],
     range: f32,
+    order: Order,
     rounds: Rounds,
 ) -> (Vec<Option<Cell>>, u32) {
     let mut work = 0;
@@ -172,8 +186,12 @@ pub fn assign<const TW: usize, const TH: usize>(
     for _ in 0..rounds.most(robots.len()) {
         let mut open: Vec<Point> = goals.clone();
         while !free.is_empty() && !open.is_empty() {
-            work += (free.len() * open.len()) as u32;
-            let pairs = free.iter().enumerate().flat_map(|(i, &robot)| {
+            let first = match order {
+                Order::NearestPair => free.len(),
+                Order::Robots => 1,
+            };
+            work += (first * open.len()) as u32;
+            let pairs = free.iter().take(first).enumerate().flat_map(|(i, &robot)| {
                 open.iter()
                     .enumerate()
                     .map(move |(j, goal)| (i, j, robots[robot].plan_distance(*goal)))

@@ -12,7 +12,7 @@ use planner_core::surface::Surface;
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
-use crate::baselines::surveys::{Follower, Guide, Rounds, assign};
+use crate::baselines::surveys::{Follower, Guide, Order, Rounds, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_point, surface_frame};
 use crate::record::Deed;
@@ -396,13 +396,15 @@ impl<const T: usize> Simulation<T> {
 
     /// The centre's targets, if there is a centre.
     fn orders(&self) -> (Vec<Option<Cell>>, u32) {
-        let rounds = match self.scenario.planner {
-            Planner::Greedy => Rounds::Many,
-            Planner::GreedyUnique => Rounds::One,
+        let (order, rounds) = match self.scenario.planner {
+            Planner::Greedy => (Order::NearestPair, Rounds::Many),
+            Planner::GreedyUnique => (Order::NearestPair, Rounds::One),
+            Planner::GreedyInOrder => (Order::Robots, Rounds::One),
             _ => return (Vec::new(), 0),
         };
         let positions: Vec<Point> = self.robots.iter().map(|robot| robot.at).collect();
-        assign(&self.union, &positions, self.scenario.limits.range, rounds)
+        let range = self.scenario.limits.range;
+        assign(&self.union, &positions, range, order, rounds)
     }
 
     /// Robot `i` decides, flies and tells the others where it is and goes.
@@ -507,7 +509,10 @@ fn pilot<const T: usize>(
     };
     Ok(match scenario.planner {
         Planner::ClosestFrontier => follower(Guide::Closest)?,
-        Planner::Greedy | Planner::GreedyUnique => follower(Guide::Centre)?,
+        Planner::ClosestUntilReached => follower(Guide::ClosestUntilReached)?,
+        Planner::Greedy | Planner::GreedyUnique | Planner::GreedyInOrder => {
+            follower(Guide::Centre)?
+        }
         Planner::CoordinatedSurvey | Planner::CoordinatedCubic => {
             let choice = if scenario.planner == Planner::CoordinatedCubic {
                 Choice::Cubic

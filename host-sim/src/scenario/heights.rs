@@ -26,13 +26,19 @@ pub enum Planner {
     CoordinatedCubic,
     /// FCAO as published.
     Fcao,
-    /// Every robot to the closest frontier.
+    /// Every robot to the closest frontier, chosen anew in every step.
     ClosestFrontier,
+    /// Every robot to the closest frontier, and to the next one when it has reached that,
+    /// as published.
+    ClosestUntilReached,
     /// A centre assigns groups of frontiers to robots, nearest pair first; robots left
     /// over start a second round.
     Greedy,
-    /// The same without the second round, as published: no frontier has two robots.
+    /// The same without the second round: no frontier has two robots.
     GreedyUnique,
+    /// A centre gives one robot after the other the nearest group that is left, one each,
+    /// as published.
+    GreedyInOrder,
 }
 
 impl std::fmt::Display for Planner {

@@ -15,15 +15,14 @@ mod link;
 mod news;
 mod recovery;
 
-pub use knowledge::{Knowledge, SetupError};
-pub use news::MAX_RANGE;
-pub(crate) use recovery::Recovery;
-
 use crate::cell::Cell;
 use crate::point::Point;
 use crate::radio::{FrameError, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::surface::{Column, Patch};
+pub use knowledge::{Knowledge, SetupError};
+pub use news::MAX_RANGE;
+pub use recovery::Recovery;
 
 /// The physics of a fleet: what its sensors reach and which poses are allowed, the
 /// constraints C(P) ≤ 0 [Renzaglia2019 §3]. All lengths in cells.

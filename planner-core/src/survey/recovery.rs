@@ -76,9 +76,11 @@ const WAITS: u8 = 32;
 /// Steps that it has when one has left.
 const TIME: u16 = 8;
 
-/// Which frontiers have been looked over since the map last grew, and the one that is.
+/// Which frontiers have been looked over since the map last grew, and the one that is: the
+/// part of a planner that decides after [`Limits::patience`](super::Limits::patience) steps
+/// without gain.
 #[derive(Clone, Debug)]
-pub(crate) struct Recovery<const TW: usize, const TH: usize> {
+pub struct Recovery<const TW: usize, const TH: usize> {
     tried: Tiles<u64, TW, TH>,
     /// Columns that refused a flight in this round.
     closed: Tiles<u64, TW, TH>,
@@ -118,7 +120,7 @@ pub(crate) struct Recovery<const TW: usize, const TH: usize> {
 
 impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// All zero, until [`reset`](Self::reset).
-    pub(crate) const fn vacant() -> Self {
+    pub const fn vacant() -> Self {
         Self {
             tried: Tiles::all(0),
             closed: Tiles::all(0),
@@ -147,7 +149,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     }
 
     /// Starts anew, in place.
-    pub(crate) fn reset(&mut self) {
+    pub fn reset(&mut self) {
         self.begin_spell();
         self.careful = false;
         self.leg = Cell::new(0, 0);
@@ -196,7 +198,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// Cost: 64 tiles while a goal is searched for, 1024 while the way to it is; every
     /// tile where a way turns out to be barred, or a round begins; and at most 32
     /// flights looked at.
-    pub(crate) fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action<Point> {
+    pub fn tick(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action<Point> {
         let refused = knowledge.take_refused();
         let known_columns = knowledge.surface().known_columns();
         let is_resumed = knowledge.take_resumed();

@@ -20,13 +20,15 @@ use crate::scenario::heights::{Planner, Scenario};
 use crate::terrain::Terrain;
 
 /// The methods that are compared, in the order of the legends.
-const METHODS: [Planner; 6] = [
+const METHODS: [Planner; 8] = [
     Planner::CoordinatedSurvey,
     Planner::CoordinatedCubic,
     Planner::Fcao,
     Planner::Greedy,
     Planner::GreedyUnique,
     Planner::ClosestFrontier,
+    Planner::GreedyInOrder,
+    Planner::ClosestUntilReached,
 ];
 
 /// Columns along a side of the terrains.

@@ -63,7 +63,7 @@ typedef enum {
   // There is no planner in this memory; call `planner_create` first.
   PLANNER_RESULT_NOT_CREATED = 3,
   // The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
-  // off the grid.
+  // off the grid; or a grid that moves would lie too far from the origin.
   PLANNER_RESULT_EXTENT = 4,
   // The scan's pose is not a number, its largest range is not a positive one, or its
   // tolerance is not between 0 and 0.25.
@@ -76,7 +76,8 @@ typedef enum {
   PLANNER_RESULT_CELL_SIZE = 9,
   // The cell that the robot is to go to lies off the grid, and nothing has changed. Or its
   // own place does, so nothing was learnt: the planner decides nothing and waits, for
-  // `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+  // `PLANNER_WAIT_POSE`, until a place lies on the grid again. Or the robot or its home
+  // would lie off a grid that is to move, and nothing has changed.
   PLANNER_RESULT_OFF_GRID = 10,
   // No frame has this length: cut short, or followed by something else.
   PLANNER_RESULT_FRAME_LENGTH = 11,
@@ -102,7 +103,7 @@ typedef enum {
   // The clearance is above 3.
   PLANNER_RESULT_CLEARANCE = 21,
   // The robot or its home lies in the cells that it is to keep out of, or its body would
-  // reach into them there.
+  // reach into them there. Or it keeps out of cells of a grid that is to move.
   PLANNER_RESULT_KEPT_OUT = 22,
   // Nothing was saved there.
   PLANNER_RESULT_NO_SAVE = 23,
@@ -114,6 +115,8 @@ typedef enum {
   PLANNER_RESULT_SAVE_OTHER_GRID = 26,
   // The save is of a robot with another id.
   PLANNER_RESULT_SAVE_OTHER_ROBOT = 27,
+  // The grid was moved 16 times since the robot stopped last.
+  PLANNER_RESULT_TOO_OFTEN = 28,
 } PlannerResult;
 
 // What the robot shall do.
@@ -382,7 +385,7 @@ extern "C" {
 // but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 // planner that runs goes on.
 //
-// Stack: 896 bytes.
+// Stack: 1024 bytes.
 PlannerResult planner_create(Planner *planner, size_t bytes, const PlannerConfig *config);
 
 // The direction `radians` from the robot's heading; grows from east to south. Make it
@@ -530,6 +533,24 @@ PlannerResult planner_add_rectangle(PlannerCellSet *set, PlannerCell corner, Pla
 //
 // Stack: 384 bytes.
 PlannerResult planner_keep_out(Planner *planner, const PlannerCellSet *set);
+
+// Moves the grid by so many tiles of 8 cells to the east and to the south, for a place that
+// is larger than it: a stop for `PLANNER_STOP_AT_EDGE` asks for it. Every cell is called by
+// a number 8 less for each, also in what you tell from now on. The robot goes on, and what
+// comes in is unknown. What falls off is lost: read it before, by `planner_row`. A fleet
+// moves by agreement, every robot by the same tiles: until all have, they do not hear each
+// other. `PLANNER_RESULT_OFF_GRID`: the robot or its home would fall off (see
+// `planner_settle`); `PLANNER_RESULT_KEPT_OUT`: call `planner_keep_out` without cells before,
+// and with those of the new grid afterwards; `PLANNER_RESULT_TOO_OFTEN`: 16 times since the
+// last stop. Then nothing has changed. Work: every tile, with its neighbours.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_recentre(Planner *planner, int8_t columns, int8_t rows);
+
+// From now on the robot's home is where it stands.
+//
+// Stack: 128 bytes.
+PlannerResult planner_settle(Planner *planner);
 
 // Writes how many bytes a save takes: 1,604 for 64×64 cells.
 //

@@ -21,7 +21,8 @@ use planner_core::{
 };
 
 pub use limits::{
-    planner_add_rectangle, planner_keep_out, planner_restore, planner_save, planner_saved_bytes,
+    planner_add_rectangle, planner_keep_out, planner_recentre, planner_restore, planner_save,
+    planner_saved_bytes, planner_settle,
 };
 pub use place::{
     PLANNER_CELL_SET_WORDS, PLANNER_MAX_CELLS, PLANNER_WORDS, Planner, PlannerCellSet,
@@ -64,7 +65,7 @@ const _: () = assert!(PLANNER_MAX_SHUT == MOST_PLACES);
 /// but `PLANNER_RESULT_OK` nothing has changed: memory without a planner has none, and a
 /// planner that runs goes on.
 ///
-/// Stack: 896 bytes.
+/// Stack: 1024 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_create(
     planner: *mut Planner,

@@ -1,4 +1,4 @@
-//! Cells to keep out of, and the state as bytes and back.
+//! Cells to keep out of, a grid that moves, and the state as bytes and back.
 
 use planner_core::{Cell, Errands as _, Persist as _};
 
@@ -44,6 +44,37 @@ pub extern "C" fn planner_keep_out(
         };
         let result = robot.explorer.keep_out(set);
         result.map_err(|_| PlannerResult::KeptOut)
+    })
+}
+
+/// Moves the grid by so many tiles of 8 cells to the east and to the south, for a place that
+/// is larger than it: a stop for `PLANNER_STOP_AT_EDGE` asks for it. Every cell is called by
+/// a number 8 less for each, also in what you tell from now on. The robot goes on, and what
+/// comes in is unknown. What falls off is lost: read it before, by `planner_row`. A fleet
+/// moves by agreement, every robot by the same tiles: until all have, they do not hear each
+/// other. `PLANNER_RESULT_OFF_GRID`: the robot or its home would fall off (see
+/// `planner_settle`); `PLANNER_RESULT_KEPT_OUT`: call `planner_keep_out` without cells before,
+/// and with those of the new grid afterwards; `PLANNER_RESULT_TOO_OFTEN`: 16 times since the
+/// last stop. Then nothing has changed. Work: every tile, with its neighbours.
+///
+/// Stack: 1024 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_recentre(planner: *mut Planner, columns: i8, rows: i8) -> PlannerResult {
+    answer(|| {
+        let robot = robot(planner)?;
+        robot.explorer.recentre(columns, rows, |_, _| {})?;
+        Ok(())
+    })
+}
+
+/// From now on the robot's home is where it stands.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_settle(planner: *mut Planner) -> PlannerResult {
+    answer(|| {
+        robot(planner)?.explorer.settle();
+        Ok(())
     })
 }
 
@@ -140,6 +171,32 @@ mod tests {
         assert_eq!(planner_add_rectangle(set, CONFIG.start, CONFIG.start), OK);
         assert_eq!(planner_keep_out(ready, set), PlannerResult::KeptOut);
         assert_eq!(planner_keep_out(null_mut(), set), PlannerResult::Null);
+    }
+
+    #[test]
+    fn a_grid_moves_with_a_robot_that_settles() {
+        let mut memory = memory();
+        let ready = created(
+            &mut memory,
+            PlannerConfig {
+                width: 24,
+                ..CONFIG
+            },
+        );
+        let place = || robot(ready).unwrap().explorer.status().position;
+        let (x, y) = (CONFIG.start.x, CONFIG.start.y);
+        let columns = (x / 8 + 1) as i8;
+        assert_eq!(planner_recentre(ready, columns, 0), PlannerResult::OffGrid);
+        assert_eq!(place(), Cell::new(x, y));
+        assert_eq!(planner_settle(ready), OK);
+        for number in 0..16 {
+            let columns = if number % 2 == 0 { -1 } else { 1 };
+            assert_eq!(planner_recentre(ready, columns, 0), OK);
+            assert_eq!(place(), Cell::new(x + 8 * (1 - number % 2), y));
+        }
+        assert_eq!(planner_recentre(ready, -1, 0), PlannerResult::TooOften);
+        assert_eq!(planner_recentre(null_mut(), 0, 0), PlannerResult::Null);
+        assert_eq!(planner_settle(null_mut()), PlannerResult::Null);
     }
 
     #[test]

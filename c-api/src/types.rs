@@ -1,6 +1,6 @@
 //! The plain data of the interface.
 
-use planner_core::explorer::SensorModel;
+use planner_core::explorer::{MoveError, SensorModel};
 use planner_core::radio::FrameError;
 use planner_core::sight::{Beam, Bearing, Pose};
 use planner_core::{Action, Cell, Direction, Map, Reason, RestoreError, Wait};
@@ -18,7 +18,7 @@ pub enum PlannerResult {
     /// There is no planner in this memory; call `planner_create` first.
     NotCreated = 3,
     /// The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
-    /// off the grid.
+    /// off the grid; or a grid that moves would lie too far from the origin.
     Extent = 4,
     /// The scan's pose is not a number, its largest range is not a positive one, or its
     /// tolerance is not between 0 and 0.25.
@@ -32,7 +32,8 @@ pub enum PlannerResult {
     CellSize = 9,
     /// The cell that the robot is to go to lies off the grid, and nothing has changed. Or its
     /// own place does, so nothing was learnt: the planner decides nothing and waits, for
-    /// `PLANNER_WAIT_POSE`, until a place lies on the grid again.
+    /// `PLANNER_WAIT_POSE`, until a place lies on the grid again. Or the robot or its home
+    /// would lie off a grid that is to move, and nothing has changed.
     OffGrid = 10,
     /// No frame has this length: cut short, or followed by something else.
     FrameLength = 11,
@@ -58,7 +59,7 @@ pub enum PlannerResult {
     /// The clearance is above 3.
     Clearance = 21,
     /// The robot or its home lies in the cells that it is to keep out of, or its body would
-    /// reach into them there.
+    /// reach into them there. Or it keeps out of cells of a grid that is to move.
     KeptOut = 22,
     /// Nothing was saved there.
     NoSave = 23,
@@ -70,6 +71,19 @@ pub enum PlannerResult {
     SaveOtherGrid = 26,
     /// The save is of a robot with another id.
     SaveOtherRobot = 27,
+    /// The grid was moved 16 times since the robot stopped last.
+    TooOften = 28,
+}
+
+impl From<MoveError> for PlannerResult {
+    fn from(error: MoveError) -> Self {
+        match error {
+            MoveError::Robot(_) | MoveError::Home(_) => Self::OffGrid,
+            MoveError::KeptOut => Self::KeptOut,
+            MoveError::TooOften => Self::TooOften,
+            MoveError::TooFar => Self::Extent,
+        }
+    }
 }
 
 impl From<RestoreError> for PlannerResult {

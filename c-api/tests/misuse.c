@@ -53,6 +53,8 @@ static void nothing_is_created(Planner *planner) {
     CHECK(planner_go_to(planner, (PlannerCell){5, 5}), wanted);
     CHECK(planner_energy(planner, 9), wanted);
     CHECK(planner_keep_out(planner, NULL), wanted);
+    CHECK(planner_recentre(planner, 0, 0), wanted);
+    CHECK(planner_settle(planner), wanted);
     CHECK(planner_saved_bytes(planner, &length), wanted);
     CHECK(planner_save(planner, 0, frame, sizeof frame, &length), wanted);
     CHECK(planner_restore(planner, frame, sizeof frame), wanted);

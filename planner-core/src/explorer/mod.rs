@@ -143,6 +143,7 @@ mod others;
 mod patch;
 mod purse;
 mod queue;
+mod recentre;
 mod saving;
 mod stopping;
 mod surroundings;
@@ -154,6 +155,7 @@ pub use body::{MAX_CLEARANCE, bodies_touch, body_cells};
 pub use config::Config;
 pub use evidence::{SensorModel, Votes};
 pub use others::MAX_OTHERS;
+pub use recentre::{MOST_MOVES, MoveError};
 
 use ahead::Ahead;
 use aside::Aside;
@@ -217,6 +219,8 @@ pub struct Explorer<const TW: usize, const TH: usize> {
     /// Whether others have told of many cells as walls that were free, since it went and
     /// looked itself.
     was_told_shut: bool,
+    /// Moves of the grid since the last stop.
+    moves: u8,
     waiting: Maybe<Wait>,
     work: u32,
 }
@@ -254,6 +258,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             ahead: Ahead::new(),
             doubts: 0,
             was_told_shut: false,
+            moves: 0,
             waiting: Maybe::Nothing,
             work: 0,
         }
@@ -286,6 +291,12 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         start: Cell,
     ) -> Result<(), ExtentError> {
         self.around.map.reset_with(extent, start)?;
+        self.start(config, id, start);
+        Ok(())
+    }
+
+    /// Starts with the map at hand.
+    fn start(&mut self, config: Config, id: RobotId, start: Cell) {
         self.around.aside.reset();
         self.around.visits.clear();
         self.around.position = start;
@@ -296,7 +307,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.id = id;
         self.role = Role::new(id, start);
         self.others = Others::new();
-        self.link.reset(config.link, id, extent);
+        self.link.reset(config.link, id, self.around.map.extent());
         self.far.cancel();
         self.budget = Budget::of(config.energy);
         self.last_goal = None;
@@ -310,9 +321,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.ahead = Ahead::new();
         self.doubts = 0;
         self.was_told_shut = false;
+        self.moves = 0;
         self.waiting = Maybe::Nothing;
         self.work = 0;
-        Ok(())
     }
 
     fn learn(&mut self, learnt: Learnt) {

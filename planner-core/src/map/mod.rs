@@ -264,6 +264,49 @@ impl<const TW: usize, const TH: usize> Map<TW, TH> {
         self.count_all();
     }
 
+    /// Moves the grid by so many tiles to the east and to the south. What falls off is given
+    /// to `fallen` first, by the old tiles; what comes in is unknown. Work: every tile, with
+    /// its neighbours.
+    pub(crate) fn shift(&mut self, columns: i8, rows: i8, mut fallen: impl FnMut(TileIndex, Tile)) {
+        let extent = self.extent;
+        let moved = |at: TileIndex, columns: i16, rows: i16| {
+            let x = u8::try_from(i16::from(at.x) + columns).ok()?;
+            let y = u8::try_from(i16::from(at.y) + rows).ok()?;
+            Some(TileIndex::new(x, y))
+        };
+        let (columns, rows) = (i16::from(columns), i16::from(rows));
+        for at in every_tile(TW, TH) {
+            let stays = moved(at, -columns, -rows).map_or(0, |to| to.inside(extent));
+            let falls = self.tile_inside(at).only(!stays);
+            if falls != Tile::UNKNOWN {
+                fallen(at, falls);
+            }
+        }
+        // In the order in which nothing is written before it was read.
+        let order = |tiles: usize, by: i16| {
+            let tiles = tiles as u8;
+            (0..tiles).map(move |at| if by < 0 { tiles - 1 - at } else { at })
+        };
+        for (y, x) in order(TH, rows).flat_map(|y| order(TW, columns).map(move |x| (y, x))) {
+            let at = TileIndex::new(x, y);
+            let inside = at.inside(extent);
+            let from = moved(at, columns, rows).map_or(Tile::UNKNOWN, |from| self.tile_known(from));
+            if let Some(tile) = self.tiles.get_mut(at) {
+                *tile = from.only(inside).with(!inside, Level::Wall);
+            }
+        }
+        self.shut
+            .shift(columns * TILE as i16, rows * TILE as i16, extent);
+        self.changed.clear();
+        self.count_all();
+    }
+
+    /// A tile without the cells beyond the extent; unknown outside of the map.
+    fn tile_known(&self, at: TileIndex) -> Tile {
+        let tile = self.tiles.get(at).copied().unwrap_or(Tile::UNKNOWN);
+        tile.only(at.inside(self.extent))
+    }
+
     /// Counts what is kept counted as cells become known.
     fn count_all(&mut self) {
         (self.unknown, self.edge) = (0, 0);

@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 
-use crate::cell::Cell;
+use crate::cell::{Cell, Extent};
 use crate::list;
 
 /// Places that are remembered; of more, the last ones.
@@ -49,6 +49,18 @@ impl Shut {
         }
         // There is room now.
         let _ = self.places.push(cell);
+    }
+
+    /// The grid moves so many cells to the east and south: places that fall off are
+    /// forgotten.
+    pub(super) fn shift(&mut self, dx: i16, dy: i16, extent: Extent) {
+        let before = self.places.len();
+        for place in &mut self.places {
+            *place = Cell::new(place.x.saturating_sub(dx), place.y.saturating_sub(dy));
+        }
+        self.places.retain(|place| extent.contains(*place));
+        let gone = before.saturating_sub(self.places.len());
+        self.cells = self.cells.saturating_sub(gone as u32);
     }
 
     /// A wall opens; `was_free` where its level tells that it had been free before.

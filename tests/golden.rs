@@ -64,6 +64,7 @@ fn survey_of(scenario: &str) -> String {
         let scenario = voxels::Scenario {
             robots,
             range: 6,
+            start: None,
             conditions,
         };
         let trace = run::voxels::run(&scene, &scenario).unwrap();

@@ -11,6 +11,7 @@
 //! `files` and `live`, which need processes, threads, sockets or a file system.
 
 pub mod baselines;
+mod bytes;
 #[cfg(unix)]
 pub mod chip;
 mod coverage;

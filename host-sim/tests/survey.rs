@@ -1,15 +1,19 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
+use std::collections::BTreeMap;
+
 use host_sim::record::Deed;
+use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::Scenario as VoxelScenario;
 use host_sim::scenario::{Event, MediumKind};
-use host_sim::scene::Scene;
 use host_sim::scene::octree::OcTree;
+use host_sim::scene::{self, Scene};
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
+use planner_core::volume::Content;
 use planner_core::{Cell, Direction, Extent, Point, Reason, Stop};
 use proptest::prelude::*;
 
@@ -432,6 +436,57 @@ proptest! {
         if let Ok(trace) = voxels::run(&scene, &scenario) {
             prop_assert!(trace.complete(), "{} of {}", trace.seen.last().unwrap(), trace.visible);
             prop_assert!(trace.all_stopped);
+        }
+    }
+
+    /// In a scan with holes, too, what is seen is all that looks from every place that can
+    /// be reached show, the free and the occupied.
+    #[test]
+    fn of_a_scan_all_is_seen_that_can_be(
+        slabs in prop::collection::vec(((0i16..14, 0i16..13, 0i16..8), (1i16..7, 1i16..7, 1i16..4)), 0..6),
+        robots in 1usize..4,
+        wide in any::<bool>(),
+    ) {
+        let width = if wide { 70 } else { 14 };
+        let scene = Scene::from_contents("scan", Extent::new(width, 13), 8, |v| {
+            let slab = slabs.iter().position(|&((x, y, z), (wide, deep, high))| {
+                (x..x + wide).contains(&v.x) && (y..y + deep).contains(&v.y) && (z..z + high).contains(&v.z)
+            });
+            match slab {
+                Some(number) if number % 2 == 0 => Content::Unknown,
+                Some(_) => Content::Occupied,
+                None if v.x >= 14 => Content::Unknown,
+                None => Content::Free,
+            }
+        });
+        let mut scenario = VoxelScenario::new(robots, 1);
+        scenario.range = 4;
+        if let Ok(trace) = voxels::run(&scene, &scenario) {
+            let start = trace.ways[0][0];
+            let mut reached = vec![start];
+            let mut expected = BTreeMap::new();
+            let mut next = 0;
+            while let Some(&at) = reached.get(next) {
+                next += 1;
+                expected.extend(scene::look(&scene, at, 4));
+                for beside in at.beside() {
+                    let stays_clear = beside.beside().iter().chain([&beside]).all(|&voxel| {
+                        matches!(scene.content(voxel), None | Some(Content::Free))
+                    });
+                    if stays_clear && scene.content(beside).is_some() && !reached.contains(&beside) {
+                        reached.push(beside);
+                    }
+                }
+            }
+            expected.retain(|voxel, _| scene.content(*voxel) != Some(Content::Unknown));
+            let found: BTreeMap<_, _> = trace.found.iter().map(|&(_, voxel, occupied)| (voxel, occupied)).collect();
+            prop_assert_eq!(found, expected);
+            prop_assert!(trace.all_stopped && trace.complete());
+            let mut file = Vec::new();
+            trace.write(&mut file).unwrap();
+            let read = VoxelTrace::read(&file[..]).unwrap();
+            prop_assert_eq!(read.scene, trace.scene);
+            prop_assert_eq!(read.found, trace.found);
         }
     }
 }

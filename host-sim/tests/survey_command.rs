@@ -1,10 +1,12 @@
 //! `host-sim survey` as a stranger calls it: what it refuses, and in which words.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
 use assert_cmd::Command;
+use host_sim::scene::octree::OcTree;
 use image::{GrayImage, Luma};
 use serde_json::Value;
 
@@ -176,7 +178,7 @@ fn files_that_are_no_terrains_are_named() {
         (
             "tree.ot",
             "# Octomap OcTree file\n",
-            ["OctoMap .ot", "convert_octree"],
+            ["complete OctoMap tree", ".ot"],
         ),
         ("cloud.pcd", "# .PCD v0.7\n", ["PCD", "octomap_server"]),
         (
@@ -207,6 +209,108 @@ fn files_that_are_no_terrains_are_named() {
     assert_refused(path, "--terrain /dev/zero", &["/dev/zero", "device"]);
     picture(&path.join("wide.png"), 513, 1, 0);
     assert_refused(path, "--terrain wide.png", &["513×1", "1 to 512"]);
+}
+
+/// A scan of two rooms with a door between them, and a third that no way leads to.
+fn rooms() -> OcTree {
+    let mut tree = OcTree::new(0.1);
+    for (x, y, z) in
+        (-20..13).flat_map(|x| (0..11).flat_map(move |y| (0..9).map(move |z| (x, y, z))))
+    {
+        let is_wall = [-20, -10, 2, 12].contains(&x) || z == 0 || z == 8;
+        let is_door = x == -10 && (3..8).contains(&y) && z > 0 && z < 8;
+        // Nobody scanned the ends of the rooms.
+        if y > 0 && y < 10 {
+            tree.insert([x, y, z], is_wall && !is_door);
+        }
+    }
+    tree
+}
+
+#[test]
+fn a_scan_is_surveyed_voxel_by_voxel_and_its_map_lies_where_it_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    rooms()
+        .write(fs::File::create(path.join("rooms.bt")).unwrap())
+        .unwrap();
+    let arguments =
+        "--scene rooms.bt --robots 2 --range 4 --start -1.55,0.45,0.35 --json --out out";
+    let assert = survey(path, arguments).assert().success();
+    let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(summary["map"], "rooms");
+    assert_eq!(summary["complete"], true);
+    assert_eq!(summary["voxel_size"], 0.1);
+    assert_eq!(summary["robots"][0]["start"], serde_json::json!([5, 4, 4]));
+    // Of both rooms two ends are not in the scan.
+    let ends = 2 * 7 * (9 + 11);
+    assert_eq!(summary["edge_cells"], ends);
+    let map = fs::read(path.join("out/map.bt")).unwrap();
+    let map = OcTree::read(&map[..]).unwrap();
+    assert_eq!(map.resolution(), 0.1);
+    let known = |tree: &OcTree| -> BTreeMap<[i32; 3], bool> {
+        let cubes = tree.cubes().into_iter();
+        let voxels = cubes.flat_map(|cube| {
+            let [x, y, z] = cube.corner;
+            let side = 0..cube.side;
+            let corners = side.clone().flat_map(move |i| {
+                let side = side.clone();
+                side.clone()
+                    .flat_map(move |j| side.clone().map(move |k| [x + i, y + j, z + k]))
+            });
+            corners.map(move |voxel| (voxel, cube.occupied))
+        });
+        voxels.collect()
+    };
+    let (all, seen) = (known(&rooms()), known(&map));
+    for (voxel, occupied) in &seen {
+        assert_eq!(all.get(voxel), Some(occupied), "{voxel:?}");
+    }
+    let is_of_two_rooms = |voxel: &&[i32; 3]| voxel[0] < 2;
+    let free = all.iter().filter(|(_, occupied)| !**occupied);
+    for (voxel, _) in free.filter(|(voxel, _)| is_of_two_rooms(voxel)) {
+        assert!(seen.contains_key(voxel), "{voxel:?}");
+    }
+    assert!(seen.keys().all(|voxel| voxel[0] <= 2));
+}
+
+#[test]
+fn scenes_and_places_that_do_not_fit_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    rooms()
+        .write(fs::File::create(path.join("rooms.bt")).unwrap())
+        .unwrap();
+    fs::write(path.join("cloud.las"), "LASF").unwrap();
+    for (arguments, words) in [
+        ("--scene rooms.bt --start 0,0.5", ["X,Y,Z", "three"]),
+        (
+            "--scene rooms.bt --start 9,0.5,0.5",
+            ["--start 9,0.5,0.5", "outside"],
+        ),
+        (
+            "--scene rooms.bt --start -0.95,0.15,0.15",
+            ["-0.95,0.15,0.15", "-1.15,0.25,0.25"],
+        ),
+        (
+            "--scene rooms.bt --voxel-size 0.15",
+            ["rooms.bt", "--voxel-size 0.15"],
+        ),
+        (
+            "--scene rooms.bt --planner fcao",
+            ["--planner", "does not apply"],
+        ),
+        (
+            "--scene rooms.bt --terrain town:1",
+            ["--scene", "--terrain"],
+        ),
+        ("--scene none.bt", ["none.bt", "no such file"]),
+        ("--scene cloud.las", ["cloud.las", "expected an OctoMap"]),
+        ("--start 1,1,1", ["--start", "--scene"]),
+        ("--voxel-size 2", ["--voxel-size", "--scene"]),
+    ] {
+        assert_refused(path, arguments, &words);
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! `host-sim survey`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::Args;
@@ -12,13 +13,14 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
-use host_sim::scene::Scene;
+use host_sim::scene::{Frame, Scene};
 use host_sim::summary::Head;
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
 use host_sim::terrain::TerrainSource;
 use indicatif::ProgressBar;
 use planner_core::survey::Limits;
+use planner_core::volume::Voxel;
 use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
@@ -32,11 +34,24 @@ const TOWN: u16 = 64;
 #[derive(Args)]
 pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
-    /// OctoMap .bt file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
+    /// OctoMap .bt or .ot file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
     /// rooms and bridges: there another planner flies, a voxel a step, and --planner,
     /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
+    /// An OctoMap .bt or .ot file of up to 512×512×255 voxels, surveyed voxel by voxel as in
+    /// a town, instead of a terrain. What it leaves unknown stays unknown: robots neither
+    /// see nor fly there.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["terrain", "size"])]
+    scene: Option<PathBuf>,
+    /// Side of a voxel of the --scene in metres: a whole number of the file's. Default: its
+    /// own.
+    #[arg(long, value_name = "M", requires = "scene")]
+    voxel_size: Option<f64>,
+    /// Where all robots start among voxels: metres in the coordinates of the --scene, whole
+    /// voxels in a town. Default: in the largest room, as far to the north-west as one can.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    start: Option<Start>,
     /// Columns along a side of a terrain drawn by a seed: 8 to 512, default 100; of a town
     /// of voxels 8 to 64, default 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(8..=512))]
@@ -71,10 +86,23 @@ pub(crate) struct Survey {
 
 impl Survey {
     pub(crate) fn run(self) -> Done {
+        if let Some(path) = &self.scene {
+            self.check_for_voxels()?;
+            let scene = Scene::read(path, self.voxel_size);
+            let scene = scene.map_err(|error| format!("{}: {error}", path.display()))?;
+            return self.run_in(&scene);
+        }
         if matches!(self.terrain, TerrainSource::Town(_)) {
             self.check_for_voxels()?;
             let scene = self.terrain.scene(self.size.unwrap_or(TOWN));
             return self.run_in(&scene.ok_or("a town is a scene")?);
+        }
+        if self.start.is_some() {
+            return Err(
+                "--start applies among voxels alone; leave it out, or choose --scene \
+                        FILE or town:SEED"
+                    .into(),
+            );
         }
         if self.size.is_some() && matches!(self.terrain, TerrainSource::File(_)) {
             return Err(
@@ -123,6 +151,10 @@ impl Survey {
     fn run_in(self, scene: &Scene) -> Done {
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
         scenario.range = self.range as u8;
+        scenario.start = match self.start {
+            Some(start) => Some(start.voxel(scene)?),
+            None => None,
+        };
         self.set(&mut scenario.conditions)?;
         let mut run = Simulation::new(scene, &scenario)?;
         let mut folder = self.output.folder(scene.name())?;
@@ -207,6 +239,35 @@ impl Survey {
     }
 }
 
+/// Three numbers.
+#[derive(Clone, Copy)]
+struct Start([f64; 3]);
+
+impl FromStr for Start {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Vec<f64> = text
+            .split(',')
+            .map_while(|part| part.parse().ok())
+            .collect();
+        match numbers[..] {
+            [x, y, z] if numbers.len() == text.split(',').count() => Ok(Self([x, y, z])),
+            _ => Err("expected X,Y,Z, three numbers with commas between".into()),
+        }
+    }
+}
+
+impl Start {
+    fn voxel(self, scene: &Scene) -> Result<Voxel, String> {
+        let Self([x, y, z]) = self;
+        let voxel = scene.frame().unwrap_or(Frame::PLAIN).voxel(self.0);
+        voxel
+            .filter(|voxel| scene.content(*voxel).is_some())
+            .ok_or_else(|| format!("--start {x},{y},{z}: lies outside of the scene"))
+    }
+}
+
 /// Moves the bar to what has been seen after the last step.
 fn advance(bar: &ProgressBar, seen: &[u32]) {
     bar.set_position(seen.last().copied().unwrap_or(0).into());
@@ -267,6 +328,12 @@ fn print_voxels(summary: &VoxelSummary, out: &Path) {
             robot.frames_sent,
             robot.bytes_sent,
             state(robot.alive, robot.stop_reason.as_deref()),
+        );
+    }
+    if summary.edge_cells > 0 {
+        println!(
+            "  end of the scene   {} voxels beside what was seen are unknown in the file",
+            summary.edge_cells
         );
     }
     print_end(&summary.head, out);

@@ -37,7 +37,7 @@ impl Space for Scene {
     }
 
     fn is_in_sight(&self, from: Voxel, to: Voxel) -> bool {
-        volume::in_sight(from, to, |voxel| self.is_occupied(voxel) != Some(true))
+        volume::in_sight(from, to, |voxel| !self.is_solid(voxel))
     }
 }
 

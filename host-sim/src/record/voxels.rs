@@ -6,8 +6,8 @@ mod file;
 use planner_core::volume::Voxel;
 
 use crate::scenario::voxels::Scenario;
-use crate::scene::Scene;
 use crate::scene::octree::OcTree;
+use crate::scene::{Frame, Marks, Scene};
 
 pub use file::{Record, Voxels};
 
@@ -46,18 +46,30 @@ impl VoxelTrace {
         tick.map(|tick| tick as u32)
     }
 
+    /// Voxels that the scene does not know beside free ones that were seen: there the scan
+    /// ends.
+    pub fn edge(&self) -> u32 {
+        let mut seen = Marks::of(&self.scene);
+        for (_, voxel, _) in &self.found {
+            seen.insert(&self.scene, *voxel);
+        }
+        self.scene.edge(|voxel| seen.contains(&self.scene, voxel))
+    }
+
     /// Whether everything that can be seen was seen, without a violation.
     pub fn complete(&self) -> bool {
         let all = Some(&self.visible).filter(|&&all| all > 0);
         all.is_some() && self.seen.last() == all && self.violations == 0
     }
 
-    /// What had been seen after `tick` steps as an octree, free voxels included.
+    /// What had been seen after `tick` steps as an octree, free voxels included, with the
+    /// coordinates and the resolution of the scene's file.
     pub fn octree(&self, tick: u32) -> OcTree {
-        let mut tree = OcTree::new(1.0);
+        let frame = self.scene.frame().unwrap_or(Frame::PLAIN);
+        let mut tree = OcTree::new(frame.voxel_size);
         let known = self.found.iter().take_while(|found| found.0 <= tick);
         for (_, voxel, occupied) in known {
-            tree.insert([voxel.x, voxel.y, voxel.z].map(i32::from), *occupied);
+            tree.insert(frame.key(*voxel), *occupied);
         }
         tree
     }

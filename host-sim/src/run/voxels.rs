@@ -1,13 +1,15 @@
 //! Runs in a scene of voxels: sense, share, decide in turn, fly; until every living robot
 //! has stopped.
 
-use std::collections::{BTreeSet, HashSet};
+mod pilot;
+
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use planner_core::radio::{Key, MAX_LEN, VoxelFrame};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Voxel, VoxelPatch};
-use planner_core::voxel_survey::{Config, VoxelSurvey};
+use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
 use crate::dice::Dice;
@@ -17,9 +19,8 @@ use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
 use crate::scenario::voxels::Scenario;
 use crate::scenario::{Faults, MediumKind, ScenarioError};
-use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
-
-type Planner = VoxelSurvey<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>;
+use crate::scene::{Marks, Scene, look, visible};
+use pilot::{Pilot, pilot};
 
 /// Words of its map that a robot repeats in each step, in turn.
 const IN_TURN: usize = 16;
@@ -27,7 +28,7 @@ const IN_TURN: usize = 16;
 /// A planner and the body that it moves.
 struct Robot {
     id: RobotId,
-    planner: Box<Planner>,
+    planner: Box<dyn Pilot>,
     at: Voxel,
     alive: bool,
     stopped: bool,
@@ -40,7 +41,7 @@ struct Robot {
 }
 
 impl Robot {
-    fn new(id: RobotId, at: Voxel, planner: Box<Planner>) -> Self {
+    fn new(id: RobotId, at: Voxel, planner: Box<dyn Pilot>) -> Self {
         Self {
             id,
             planner,
@@ -60,12 +61,12 @@ impl Robot {
         let mut touched: BTreeSet<(TileIndex, u8)> = seen
             .map(|&(voxel, _)| (tile(voxel), voxel.z as u8))
             .collect();
-        let volume = self.planner.volume();
         for _ in 0..IN_TURN {
             touched.insert(self.turn);
-            self.turn = volume.after(self.turn.0, self.turn.1);
+            self.turn = self.planner.after(self.turn.0, self.turn.1);
         }
-        let patches = touched.into_iter().map(|(tile, z)| volume.patch(tile, z));
+        let patches = touched.into_iter();
+        let patches = patches.map(|(tile, z)| self.planner.patch(tile, z));
         patches.collect()
     }
 }
@@ -108,8 +109,7 @@ impl Station for Robot {
     }
 
     fn anywhere(&self, dice: &mut Dice) -> Voxel {
-        let volume = self.planner.volume();
-        any_voxel(volume.extent(), volume.levels(), dice)
+        any_voxel(self.planner.extent(), self.planner.levels(), dice)
     }
 
     fn around(&self) -> Vec<Voxel> {
@@ -117,8 +117,8 @@ impl Station for Robot {
     }
 
     fn forged(&self, claim: Claim<Voxel>, pieces: u32, dice: &mut Dice) -> VoxelFrame {
-        let volume = self.planner.volume();
-        voxel_frame(volume.extent(), volume.levels(), claim, pieces, dice)
+        let (extent, levels) = (self.planner.extent(), self.planner.levels());
+        voxel_frame(extent, levels, claim, pieces, dice)
     }
 
     fn encode(frame: &VoxelFrame, key: Option<&Key>, buffer: &mut [u8; MAX_LEN]) -> usize {
@@ -143,38 +143,34 @@ pub struct Simulation {
     robots: Vec<Robot>,
     trace: VoxelTrace,
     radio: Radio<Scene>,
-    visible: HashSet<Voxel>,
-    known: HashSet<Voxel>,
+    visible: Marks,
+    known: Marks,
     /// Occupied voxels seen.
     seen: u32,
     now: u32,
 }
 
 impl Simulation {
-    /// A run before its first step. Robots start above the ground near the north-west
-    /// corner, or wherever there is room first.
+    /// A run before its first step. Robots start where the scenario says, or at
+    /// [`Scene::start`].
     ///
     /// # Errors
     /// A setting is out of its range, there is no room for a robot, or nothing to see.
     pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, ScenarioError> {
         scenario.check(scene)?;
-        let start = scene
-            .voxels()
-            .filter(|voxel| voxel.z >= 2 && scene.is_pose(*voxel))
-            .min_by_key(|voxel| voxel.distance_squared(Voxel::new(2, 2, 2)))
-            .ok_or(ScenarioError::NoPose)?;
+        let start = scenario.start_in(scene)?;
         let config = Config {
             range: scenario.range,
             link: scenario.conditions.link(),
         };
         let robot = |id| {
             let id = RobotId(id as u8);
-            Ok(Robot::new(id, start, planner(scene, config, id)?))
+            Ok(Robot::new(id, start, pilot(scene, config, id)?))
         };
         let robots = (0..scenario.robots).map(robot);
         let robots = robots.collect::<Result<_, ExtentError>>()?;
         let visible = visible(scene, start, scenario.range);
-        if visible.is_empty() {
+        if visible.count() == 0 {
             return Err(ScenarioError::NothingToSee);
         }
         let scene = Arc::new(scene.clone());
@@ -187,16 +183,16 @@ impl Simulation {
                 ways: vec![vec![start]; scenario.robots],
                 records: Vec::new(),
                 found: Vec::new(),
-                visible: visible.len() as u32,
+                visible: visible.count(),
                 seen: Vec::new(),
                 all_stopped: false,
                 stops: vec![None; scenario.robots],
                 violations: 0,
             },
             radio: Radio::new(&scenario.conditions, scene.clone()),
+            known: Marks::of(&scene),
             scene,
             visible,
-            known: HashSet::new(),
             seen: 0,
             now: 0,
         })
@@ -253,7 +249,7 @@ impl Simulation {
             robot.alive = faults.is_alive(robot.id, self.now);
             robot.sent = Sent::default();
             if robot.alive && Faults::befalls(&faults.restarts, robot.id, self.now) {
-                let planner = planner(&self.scene, self.config, robot.id);
+                let planner = pilot(&self.scene, self.config, robot.id);
                 robot.planner = planner.expect("it was set up like this before");
                 robot.stopped = false;
             }
@@ -268,9 +264,10 @@ impl Simulation {
         for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
             robot.view = look(&self.scene, robot.at, self.config.range);
             for &(voxel, occupied) in &robot.view {
-                if self.known.insert(voxel) {
+                // Where the scan ends robots see a wall; the map leaves it unknown.
+                if self.scene.is_known(voxel) && self.known.insert(&self.scene, voxel) {
                     self.trace.found.push((self.now, voxel, occupied));
-                    self.seen += u32::from(self.visible.contains(&voxel));
+                    self.seen += u32::from(self.visible.contains(&self.scene, voxel));
                 }
             }
             robot.planner.observe(robot.at, &robot.view);
@@ -337,13 +334,9 @@ impl Simulation {
             deed,
             goal: status.goal,
             gain: Nothing {},
-            known: robot.planner.volume().known_voxels(),
+            known: robot.planner.known_voxels(),
             work,
             sent: robot.sent,
         });
     }
-}
-
-fn planner(scene: &Scene, config: Config, id: RobotId) -> Result<Box<Planner>, ExtentError> {
-    Planner::new(config, id, scene.extent(), scene.levels()).map(Box::new)
 }

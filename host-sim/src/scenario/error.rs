@@ -150,6 +150,11 @@ pub enum ScenarioError {
     #[error("there is no room for a robot: a robot and the six voxels beside it have to be free")]
     NoPose,
     #[error(
+        "--start {found}: a robot and the six voxels beside it have to be known and free; the \
+         nearest such place is {nearest}"
+    )]
+    NoRoomAt { found: String, nearest: String },
+    #[error(
         "nothing of the scene can be seen from where robots can fly; a survey needs an occupied \
          voxel in sight and in range"
     )]

@@ -1,5 +1,6 @@
 //! Surveys of a scene of voxels.
 
+use planner_core::volume::Voxel;
 use planner_core::voxel_survey::MAX_RANGE;
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,9 @@ pub struct Scenario {
     pub robots: usize,
     /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
     pub range: u8,
+    /// Where all robots start; [`Scene::start`] if nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<Voxel>,
     /// What all worlds share.
     #[serde(flatten)]
     pub conditions: Conditions,
@@ -24,6 +28,7 @@ impl Scenario {
         Self {
             robots,
             range: 8,
+            start: None,
             conditions: Conditions::flown(seed),
         }
     }
@@ -38,6 +43,9 @@ impl Scenario {
         if !(2..=MAX_RANGE).contains(&self.range) {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));
+        }
+        if let Some(start) = self.start {
+            check_start(start, scene)?;
         }
         let (extent, levels) = (scene.extent(), scene.levels());
         let sides = 1..=LARGEST;
@@ -54,4 +62,31 @@ impl Scenario {
             }),
         }
     }
+
+    /// Where the robots start in `scene`.
+    ///
+    /// # Errors
+    /// There is no room for a robot.
+    pub(crate) fn start_in(&self, scene: &Scene) -> Result<Voxel, ScenarioError> {
+        let start = self.start.or_else(|| scene.start());
+        start.ok_or(ScenarioError::NoPose)
+    }
+}
+
+/// # Errors
+/// A robot has no room at `start`; with the nearest place where it has.
+fn check_start(start: Voxel, scene: &Scene) -> Result<(), ScenarioError> {
+    if scene.is_pose(start) {
+        return Ok(());
+    }
+    let nearest = scene.nearest_pose(start).ok_or(ScenarioError::NoPose)?;
+    let (found, nearest) = match scene.frame() {
+        None => (start.to_string(), nearest.to_string()),
+        Some(frame) => (metres(frame.middle(start)), metres(frame.middle(nearest))),
+    };
+    Err(ScenarioError::NoRoomAt { found, nearest })
+}
+
+fn metres([x, y, z]: [f64; 3]) -> String {
+    format!("{x:.2},{y:.2},{z:.2}")
 }

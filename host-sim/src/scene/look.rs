@@ -1,57 +1,57 @@
 //! What robots see of a scene.
 
-use std::collections::HashSet;
+use planner_core::volume::{Content, Voxel, in_sight};
 
-use planner_core::volume::{Voxel, in_sight};
+use super::{Marks, Scene};
 
-use super::Scene;
-
-/// What `eye` sees within `range` voxels, each with whether it is occupied.
+/// What `eye` sees within `range` voxels, each with whether it is solid. A voxel that the
+/// scene does not know ends the sight like one that is occupied.
 pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
-    look_for(scene, eye, range, |_, _| true)
-}
-
-/// What `eye` sees of what is wanted.
-fn look_for(
-    scene: &Scene,
-    eye: Voxel,
-    range: u8,
-    is_wanted: impl Fn(Voxel, bool) -> bool,
-) -> Vec<(Voxel, bool)> {
-    let reach = i16::from(range);
     let mut seen = Vec::new();
-    for z in eye.z - reach..=eye.z + reach {
-        for y in eye.y - reach..=eye.y + reach {
-            for x in eye.x - reach..=eye.x + reach {
-                let voxel = Voxel::new(x, y, z);
-                if let Some(occupied) = scene.is_occupied(voxel)
-                    && eye.distance_squared(voxel) <= u32::from(range).pow(2)
-                    && is_wanted(voxel, occupied)
-                    && in_sight(eye, voxel, |at| scene.is_occupied(at) != Some(true))
-                {
-                    seen.push((voxel, occupied));
-                }
-            }
+    for voxel in around(eye, range) {
+        if let Some(content) = scene.content(voxel)
+            && in_sight(eye, voxel, |at| !scene.is_solid(at))
+        {
+            seen.push((voxel, content != Content::Free));
         }
     }
     seen
 }
 
+/// The voxels within `range` of `eye`, level by level.
+fn around(eye: Voxel, range: u8) -> impl Iterator<Item = Voxel> {
+    let reach = i16::from(range);
+    let span = move |at: i16| at - reach..=at + reach;
+    let voxels = span(eye.z).flat_map(move |z| {
+        span(eye.y).flat_map(move |y| span(eye.x).map(move |x| Voxel::new(x, y, z)))
+    });
+    voxels.filter(move |voxel| eye.distance_squared(*voxel) <= u32::from(range).pow(2))
+}
+
 /// The occupied voxels that can be seen from any place that can be reached from `start`.
-pub(crate) fn visible(scene: &Scene, start: Voxel, range: u8) -> HashSet<Voxel> {
-    let mut reached = vec![start];
-    let mut is_reached: HashSet<Voxel> = reached.iter().copied().collect();
-    let mut visible: HashSet<Voxel> = HashSet::new();
-    let mut next = 0;
-    while let Some(&at) = reached.get(next) {
-        next += 1;
-        let is_new = |voxel, occupied| occupied && !visible.contains(&voxel);
-        let new = look_for(scene, at, range, is_new);
-        visible.extend(new.into_iter().map(|(voxel, _)| voxel));
-        for beside in at.beside() {
-            if scene.is_pose(beside) && is_reached.insert(beside) {
-                reached.push(beside);
-            }
+///
+/// Cost: for each occupied voxel beside a free one, a ray to the nearest such place that
+/// sees it; to all within range if none does.
+pub(crate) fn visible(scene: &Scene, start: Voxel, range: u8) -> Marks {
+    let reached = scene.reached(start);
+    let centre = Voxel::new(0, 0, 0);
+    let mut offsets: Vec<Voxel> = around(centre, range).collect();
+    offsets.sort_by_key(|offset| centre.distance_squared(*offset));
+    let mut visible = Marks::of(scene);
+    for voxel in scene.voxels() {
+        if scene.content(voxel) != Some(Content::Occupied) {
+            continue;
+        }
+        // A ray comes to a voxel over one of the 26 about it.
+        if around(voxel, 2).all(|at| scene.content(at) != Some(Content::Free)) {
+            continue;
+        }
+        let sees = |offset: &Voxel| {
+            let eye = Voxel::new(voxel.x + offset.x, voxel.y + offset.y, voxel.z + offset.z);
+            reached.contains(scene, eye) && in_sight(eye, voxel, |at| !scene.is_solid(at))
+        };
+        if offsets.iter().any(sees) {
+            visible.insert(scene, voxel);
         }
     }
     visible

@@ -1,29 +1,84 @@
 //! Worlds of voxels: streets, undersides, rooms.
 
+mod file;
 mod look;
+mod marks;
 pub mod octree;
+mod space;
 
 use planner_core::Extent;
-use planner_core::volume::Voxel;
+use planner_core::volume::{Content, Voxel};
+use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
 
+pub use file::SceneError;
 pub use look::look;
 pub(crate) use look::visible;
+pub(crate) use marks::Marks;
 
-/// A box of voxels; voxels of one cell's side.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A box of voxels. What a scan left unknown is neither free nor occupied: nothing flies
+/// or sees there.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     name: String,
     extent: Extent,
     levels: u8,
-    occupied: Vec<bool>,
+    frame: Option<Frame>,
+    contents: Vec<Content>,
+}
+
+/// Where the box of a scene lies in the coordinates of the file that it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Side of a voxel in metres.
+    pub voxel_size: f64,
+    /// The scene's voxel (0, 0, 0) counted from the origin of the coordinates: its lower
+    /// corner lies there times `voxel_size`.
+    pub corner: octree::Voxel,
+}
+
+impl Frame {
+    /// Of scenes that nothing says more of: a voxel is a metre wide.
+    pub const PLAIN: Self = Self {
+        voxel_size: 1.0,
+        corner: [0; 3],
+    };
+
+    /// Whether its voxels have a size and lie where an octree has voxels.
+    pub(crate) fn is_good(&self) -> bool {
+        let is_near = |corner: &i32| corner.unsigned_abs() <= 1 << 15;
+        self.voxel_size.is_finite() && self.voxel_size > 0.0 && self.corner.iter().all(is_near)
+    }
+
+    /// The voxel in which a point lies, in metres; `None` beyond all boxes.
+    pub fn voxel(&self, point: [f64; 3]) -> Option<Voxel> {
+        let mut voxel = [0i16; 3];
+        for (axis, voxel) in voxel.iter_mut().enumerate() {
+            let at = (point[axis] / self.voxel_size).floor() - f64::from(self.corner[axis]);
+            *voxel = (at.abs() < f64::from(i16::MAX)).then_some(at as i16)?;
+        }
+        let [x, y, z] = voxel;
+        Some(Voxel::new(x, y, z))
+    }
+
+    /// A voxel counted from the origin of the coordinates.
+    pub(crate) fn key(&self, voxel: Voxel) -> octree::Voxel {
+        let at = [voxel.x, voxel.y, voxel.z];
+        [0, 1, 2].map(|axis| i32::from(at[axis]) + self.corner[axis])
+    }
+
+    /// The middle of a voxel, in metres.
+    pub fn middle(&self, voxel: Voxel) -> [f64; 3] {
+        let key = self.key(voxel);
+        key.map(|at| (f64::from(at) + 0.5) * self.voxel_size)
+    }
 }
 
 /// Columns along a side of the largest scene.
-pub(crate) const LARGEST: u16 = 64;
+pub(crate) const LARGEST: u16 = 512;
 /// Levels of the highest scene.
-pub(crate) const LEVELS: u8 = 24;
+pub(crate) const LEVELS: u8 = 255;
 
 impl Scene {
     /// A scene in which `is_occupied` says where something is.
@@ -31,13 +86,41 @@ impl Scene {
         name: impl Into<String>,
         extent: Extent,
         levels: u8,
-        is_occupied: impl FnMut(Voxel) -> bool,
+        mut is_occupied: impl FnMut(Voxel) -> bool,
+    ) -> Self {
+        let content = |voxel| match is_occupied(voxel) {
+            true => Content::Occupied,
+            false => Content::Free,
+        };
+        Self::from_contents(name, extent, levels, content)
+    }
+
+    /// A scene of what `content` says of each voxel.
+    pub fn from_contents(
+        name: impl Into<String>,
+        extent: Extent,
+        levels: u8,
+        content: impl FnMut(Voxel) -> Content,
     ) -> Self {
         Self {
             name: name.into(),
             extent,
             levels,
-            occupied: voxels(extent, levels).map(is_occupied).collect(),
+            frame: None,
+            contents: voxels(extent, levels).map(content).collect(),
+        }
+    }
+
+    /// The same in the coordinates of a file.
+    pub fn framed(self, frame: Option<Frame>) -> Self {
+        Self { frame, ..self }
+    }
+
+    /// The same by another name.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
         }
     }
 
@@ -98,7 +181,10 @@ impl Scene {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {
                     if let Some(index) = self.index(Voxel::new(x, y, z)) {
-                        self.occupied[index] = occupied;
+                        self.contents[index] = match occupied {
+                            true => Content::Occupied,
+                            false => Content::Free,
+                        };
                     }
                 }
             }
@@ -130,18 +216,38 @@ impl Scene {
         self.levels
     }
 
-    /// Whether something is at `voxel`; `None` outside.
-    pub fn is_occupied(&self, voxel: Voxel) -> Option<bool> {
-        self.index(voxel).map(|index| self.occupied[index])
+    /// Its coordinates, where it comes from a file.
+    pub fn frame(&self) -> Option<Frame> {
+        self.frame
     }
 
-    /// Whether a robot may be at `voxel`: it and its neighbours are free.
+    /// What is at `voxel`; `None` outside.
+    pub fn content(&self, voxel: Voxel) -> Option<Content> {
+        self.index(voxel).map(|index| self.contents[index])
+    }
+
+    /// Whether something is known to be at `voxel`.
+    pub fn is_occupied(&self, voxel: Voxel) -> bool {
+        self.content(voxel) == Some(Content::Occupied)
+    }
+
+    /// Whether it says what is at `voxel`.
+    pub fn is_known(&self, voxel: Voxel) -> bool {
+        !matches!(self.content(voxel), None | Some(Content::Unknown))
+    }
+
+    /// Whether sight and flight end at `voxel`: something is there, or may be.
+    pub fn is_solid(&self, voxel: Voxel) -> bool {
+        matches!(
+            self.content(voxel),
+            Some(Content::Occupied | Content::Unknown)
+        )
+    }
+
+    /// Whether a robot may be at `voxel`: it is free, and its neighbours are not solid.
     pub fn is_pose(&self, voxel: Voxel) -> bool {
-        self.is_occupied(voxel) == Some(false)
-            && voxel
-                .beside()
-                .iter()
-                .all(|&v| self.is_occupied(v) != Some(true))
+        self.content(voxel) == Some(Content::Free)
+            && voxel.beside().iter().all(|&v| !self.is_solid(v))
     }
 
     /// All voxels, level by level.

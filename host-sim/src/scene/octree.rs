@@ -1,10 +1,14 @@
-//! OctoMap's occupancy octree and its binary file format `.bt` \[Hornung2013\].
+//! OctoMap's occupancy octree and its file formats `.bt` and `.ot` \[Hornung2013\].
 //!
-//! A file is a text header, `# Octomap OcTree binary file`, then lines `id OcTree`,
+//! A `.bt` file is a text header, `# Octomap OcTree binary file`, then lines `id OcTree`,
 //! `size NODES`, `res METRES`, `data`; then the inner nodes depth first, two bytes
 //! each: for child i the bits 2i and 2i+1, `00` unknown, `10` free, `01` occupied,
 //! `11` inner (lower bit first). Child i lies on the upper side in x, y and z if bit
 //! 0, 1 and 2 of i is set. A leaf above the lowest level stands for all of its cube.
+//!
+//! An `.ot` file begins with `# Octomap OcTree file` and has all nodes, depth first, five
+//! bytes each: the logarithm of the odds that it is occupied, a little-endian `f32`, and
+//! one bit for each child that there is; a node without is a leaf, free below 0.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -15,7 +19,10 @@ const DEPTH: u32 = 16;
 const CENTRE: i32 = 1 << (DEPTH - 1);
 
 /// First line of a `.bt` file.
-pub(crate) const MAGIC: &str = "# Octomap OcTree binary file";
+const MAGIC: &str = "# Octomap OcTree binary file";
+
+/// First line of an `.ot` file.
+const FULL_MAGIC: &str = "# Octomap OcTree file";
 
 /// Most bytes of a header that is read.
 const LONGEST_HEADER: u64 = 4096;
@@ -146,7 +153,14 @@ impl OcTree {
             .map_or(Ok(()), |root| emit(root, &mut to))
     }
 
-    /// Reads a `.bt` file of at most 4,194,304 nodes.
+    /// Whether a file that begins like this is one of the two kinds.
+    pub fn is_tree(bytes: &[u8]) -> bool {
+        [MAGIC, FULL_MAGIC]
+            .iter()
+            .any(|magic| bytes.starts_with(magic.as_bytes()))
+    }
+
+    /// Reads a `.bt` or `.ot` file of at most 4,194,304 nodes.
     ///
     /// # Errors
     /// What is wrong with the file, or that it cannot be read.
@@ -154,8 +168,9 @@ impl OcTree {
         let mut header = from.by_ref().take(LONGEST_HEADER);
         let mut line = String::new();
         header.read_line(&mut line)?;
-        if !line.starts_with(MAGIC) {
-            return Err(invalid("not an OctoMap binary tree"));
+        let is_full = line.starts_with(FULL_MAGIC);
+        if !is_full && !line.starts_with(MAGIC) {
+            return Err(invalid("not an OctoMap tree"));
         }
         let (mut size, mut resolution) = (None, None);
         loop {
@@ -182,10 +197,10 @@ impl OcTree {
             .filter(|side| *side > 0.0 && side.is_finite())
             .ok_or_else(|| invalid("the header has no resolution above 0"))?;
         let mut left = size;
-        let root = if size == 0 {
-            None
-        } else {
-            Some(parse(&mut from, DEPTH, &mut left)?)
+        let root = match size {
+            0 => None,
+            _ if is_full => Some(parse_full(&mut from, DEPTH, &mut left)?),
+            _ => Some(parse(&mut from, DEPTH, &mut left)?),
         };
         if left != 0 {
             return Err(invalid("fewer nodes than its header says"));
@@ -196,6 +211,13 @@ impl OcTree {
 
 fn invalid(reason: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, reason.into())
+}
+
+fn cut_off(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => invalid("ends in the middle; it was cut off"),
+        _ => error,
+    }
 }
 
 /// Counts one of the nodes that are left.
@@ -214,11 +236,7 @@ fn parse(from: &mut impl BufRead, depth: u32, left: &mut usize) -> io::Result<No
     }
     count(left)?;
     let mut bytes = [0; 2];
-    from.read_exact(&mut bytes)
-        .map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => invalid("ends in the middle; it was cut off"),
-            _ => error,
-        })?;
+    from.read_exact(&mut bytes).map_err(cut_off)?;
     let bits = u16::from_le_bytes(bytes);
     let mut children: Box<[Option<Node>; 8]> = Box::default();
     for (i, child) in children.iter_mut().enumerate() {
@@ -234,6 +252,32 @@ fn parse(from: &mut impl BufRead, depth: u32, left: &mut usize) -> io::Result<No
         match child {
             Node::Inner(_) => *child = parse(from, depth - 1, left)?,
             Node::Leaf { .. } => count(left)?,
+        }
+    }
+    Ok(Node::Inner(children))
+}
+
+/// A node of an `.ot` file `depth` levels above voxels, with all below it.
+fn parse_full(from: &mut impl BufRead, depth: u32, left: &mut usize) -> io::Result<Node> {
+    count(left)?;
+    let mut bytes = [0; 5];
+    from.read_exact(&mut bytes).map_err(cut_off)?;
+    let [a, b, c, d, has_child] = bytes;
+    let odds = f32::from_le_bytes([a, b, c, d]);
+    if !odds.is_finite() {
+        return Err(invalid(format!("a node with the log-odds {odds}")));
+    }
+    if has_child == 0 {
+        let occupied = odds >= 0.0;
+        return Ok(Node::Leaf { occupied });
+    }
+    if depth == 0 {
+        return Err(invalid("a voxel with children"));
+    }
+    let mut children = Box::new([const { None }; 8]);
+    for (i, child) in children.iter_mut().enumerate() {
+        if has_child & 1 << i != 0 {
+            *child = Some(parse_full(from, depth - 1, left)?);
         }
     }
     Ok(Node::Inner(children))
@@ -322,6 +366,44 @@ mod tests {
             let at = at % bytes.len();
             bytes[at] ^= flip;
             let _ = OcTree::read(&bytes[..]);
+        }
+    }
+
+    /// As OctoMap writes it: a root with two leaves, the first an inner node with one.
+    #[test]
+    fn odds_above_a_half_are_occupied() {
+        let header = format!("{FULL_MAGIC}\nid OcTree\nsize 4\nres 0.5\ndata\n");
+        let node = |odds: f32, children: u8| [&odds.to_le_bytes()[..], &[children]].concat();
+        let nodes = [
+            node(0.8, 0b1001),
+            node(0.8, 0b10),
+            node(0.85, 0),
+            node(-0.4, 0),
+        ];
+        let file = [header.as_bytes(), &nodes.concat()].concat();
+        let half = CENTRE;
+        let cube = |corner, side, occupied| Cube {
+            corner,
+            side,
+            occupied,
+        };
+        let tree = OcTree::read(&file[..]).unwrap();
+        assert_eq!(
+            tree.cubes(),
+            [
+                cube([-half / 2, -half, -half], half / 2, true),
+                cube([0, 0, -half], half, false),
+            ]
+        );
+        for (nodes, reason) in [
+            (nodes[..3].concat(), "middle"),
+            (node(f32::NAN, 0), "log-odds NaN"),
+            (node(0.0, 1).repeat(4), "more nodes"),
+            (node(0.0, 0), "fewer nodes"),
+        ] {
+            let file = [header.as_bytes(), &nodes].concat();
+            let error = OcTree::read(&file[..]).unwrap_err().to_string();
+            assert!(error.contains(reason), "{reason:?} is not in {error}");
         }
     }
 

@@ -25,6 +25,10 @@ pub struct Summary {
     pub planner: &'static str,
     /// Sensor range in voxels.
     pub range: u8,
+    /// Side of a voxel in metres, where the scene says so.
+    pub voxel_size: Option<f64>,
+    /// Voxels that the scene itself does not know, beside free ones that were seen.
+    pub edge_cells: u32,
     /// Robot by robot.
     pub robots: Vec<RobotSummary>,
 }
@@ -80,6 +84,8 @@ impl Summary {
             violations: trace.violations,
             planner: "voxel-survey",
             range: scenario.range,
+            voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
+            edge_cells: trace.edge(),
             robots: robots.collect(),
         }
     }

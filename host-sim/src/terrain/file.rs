@@ -1,7 +1,6 @@
 //! Terrains out of files: grey images and OctoMap trees, told apart by their content.
 
-use std::fs::{self, File};
-use std::io::{self, Cursor, Read};
+use std::io::{self, Cursor};
 use std::path::Path;
 
 use image::ImageFormat;
@@ -12,7 +11,8 @@ use thiserror::Error;
 
 use super::Terrain;
 use super::foreign::foreign;
-use crate::scene::octree::{Cube, MAGIC, OcTree};
+use crate::bytes::{self, Unread};
+use crate::scene::octree::{Cube, OcTree};
 
 /// Columns along the longest side of a map.
 pub(crate) const LARGEST: u32 = 512;
@@ -65,14 +65,25 @@ pub enum TerrainError {
     NoGround,
     #[error(
         "the highest voxel lies {found} voxels over the lowest; expected at most {HIGHEST}: \
-         give a tree of a coarser resolution"
+         give a tree of a coarser resolution, or survey it voxel by voxel with --scene"
     )]
     TooHigh { found: u32 },
 }
 
 /// What is read.
 const READ: &str = "a grey PNG or PGM, whose shades are heights in quarters of a cell, or an \
-                    OctoMap .bt tree";
+                    OctoMap .bt or .ot tree";
+
+impl From<Unread> for TerrainError {
+    fn from(unread: Unread) -> Self {
+        match unread {
+            Unread::Missing => Self::Missing,
+            Unread::NoFile => Self::NoFile,
+            Unread::TooLong => Self::TooLong,
+            Unread::Io(error) => Self::Unreadable(error),
+        }
+    }
+}
 
 impl Terrain {
     /// Reads a terrain from a file, called like the file.
@@ -80,20 +91,7 @@ impl Terrain {
     /// # Errors
     /// [`TerrainError`] says what is wrong and what to do.
     pub fn read(path: &Path) -> Result<Self, TerrainError> {
-        let missing = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => TerrainError::Missing,
-            _ => error.into(),
-        };
-        // Neither a pipe without a writer nor a device without an end is waited for.
-        if !fs::metadata(path).map_err(missing)?.is_file() {
-            return Err(TerrainError::NoFile);
-        }
-        let mut bytes = Vec::new();
-        let file = File::open(path).map_err(missing)?;
-        file.take(MOST_BYTES + 1).read_to_end(&mut bytes)?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(TerrainError::TooLong);
-        }
+        let bytes = bytes::read(path, MOST_BYTES)?;
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Ok(Self::from_bytes(&bytes, &ending)?.named(name))
@@ -108,7 +106,7 @@ impl Terrain {
         if bytes.is_empty() {
             return Err(TerrainError::Empty);
         }
-        if bytes.starts_with(MAGIC.as_bytes()) {
+        if OcTree::is_tree(bytes) {
             return from_tree(&OcTree::read(bytes).map_err(TerrainError::BrokenTree)?);
         }
         match image::guess_format(bytes) {
@@ -268,11 +266,10 @@ mod tests {
     fn other_formats_are_named_with_a_way_to_what_is_read() {
         for (bytes, ending, words) in [
             (
-                &b"# Octomap OcTree file\nid OcTree"[..],
-                "ot",
-                ["an OctoMap .ot tree", "convert_octree"],
+                &b"# .PCD v0.7 - Point Cloud Data"[..],
+                "pcd",
+                ["PCD", "octomap"],
             ),
-            (b"# .PCD v0.7 - Point Cloud Data", "pcd", ["PCD", "octomap"]),
             (b"ply\nformat ascii 1.0", "ply", ["PLY", "binvox2bt"]),
             (b"solid cube", "stl", ["STL", "binvox2bt"]),
             (b"\0\0\0\0", "stl", ["STL", "binvox2bt"]),

@@ -12,7 +12,6 @@ pub(super) struct Foreign {
 
 const GREYS: &str = "save it as a PNG of 8-bit greys, for example `magick IN -colorspace gray \
                      -depth 8 OUT.png`";
-const OCTREE: &str = "convert it with OctoMap's tools: `convert_octree IN.ot OUT.bt`";
 const CLOUD: &str = "make an octree of it, for example with ROS's octomap_server and \
                      octomap_saver, and give its .bt file";
 const MESH: &str = "make voxels of it and an octree of these: `binvox IN`, then `binvox2bt \
@@ -23,8 +22,7 @@ const MAP: &str = "`host-sim explore` reads it; a survey needs heights";
 const PACKED: &str = "unpack it and give the file in it";
 
 /// What files begin with.
-const BEGINNINGS: [(&[u8], &str, &str); 25] = [
-    (b"# Octomap OcTree file", "an OctoMap .ot tree", OCTREE),
+const BEGINNINGS: [(&[u8], &str, &str); 24] = [
     (b"# .PCD", "a PCD point cloud", CLOUD),
     (b"VERSION .7", "a PCD point cloud", CLOUD),
     (b"VERSION 0.7", "a PCD point cloud", CLOUD),
@@ -56,8 +54,7 @@ const BEGINNINGS: [(&[u8], &str, &str); 25] = [
 ];
 
 /// Endings of what cannot be told by its beginning.
-const ENDINGS: [(&str, &str, &str); 13] = [
-    ("ot", "an OctoMap .ot tree", OCTREE),
+const ENDINGS: [(&str, &str, &str); 12] = [
     ("pcd", "a PCD point cloud", CLOUD),
     ("xyz", "a point cloud", CLOUD),
     ("laz", "a LAS point cloud", CLOUD),

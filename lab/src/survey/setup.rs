@@ -75,6 +75,7 @@ impl SurveySetup {
         voxels::Scenario {
             robots: self.robots.into(),
             range: self.range,
+            start: None,
             conditions: self.conditions.clone(),
         }
     }

@@ -142,7 +142,7 @@ impl Flight for Voxels {
     fn beneath(&self, at: Point) -> f32 {
         let (cell, scene) = (at.cell(), &self.trace().scene);
         let below = (0..at.z as i16).rev();
-        let solid = |z: &i16| scene.is_occupied(Voxel::new(cell.x, cell.y, *z)) == Some(true);
+        let solid = |z: &i16| scene.is_occupied(Voxel::new(cell.x, cell.y, *z));
         below
             .into_iter()
             .find(solid)
@@ -153,9 +153,9 @@ impl Flight for Voxels {
         let scene = &self.trace().scene;
         let (extent, levels) = (scene.extent(), scene.levels().min(layers.levels));
         let look = |voxel: Voxel| match scene.is_occupied(voxel) {
-            Some(true) if voxel.z >= i16::from(levels) => Look::Nothing,
-            Some(true) if self.seen_since[index(scene, voxel)] as usize <= steps => Look::Seen,
-            Some(true) if layers.hidden => Look::Hidden,
+            true if voxel.z >= i16::from(levels) => Look::Nothing,
+            true if self.seen_since[index(scene, voxel)] as usize <= steps => Look::Seen,
+            true if layers.hidden => Look::Hidden,
             _ => Look::Nothing,
         };
         let east = if eye.east_is_near() { 1 } else { -1 };

@@ -1,14 +1,13 @@
 //! Traces of runs among voxels as files.
 //!
 //! They are as [`record`](crate::record) says; the header holds the scenario, the scene as
-//! rows of `#` occupied and `.` free, level by level from below, where the robots started,
+//! rows of `#` occupied, `.` free and `?` unknown, level by level from below, where the robots started,
 //! whether every one had stopped and why each had; the columns are the fields of a
 //! [`Record`].
 
-use std::collections::HashSet;
 use std::io::{self, BufRead};
 
-use planner_core::volume::Voxel;
+use planner_core::volume::{Content, Voxel};
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +15,7 @@ use super::VoxelTrace;
 use crate::record::{self, Deed, Format, Kind, Nothing, Objection, Order, TraceError, wrong};
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
-use crate::scene::{LARGEST, LEVELS, Scene, look, visible};
+use crate::scene::{Frame, LARGEST, LEVELS, Marks, Scene, look, visible};
 
 /// Most steps without a record, all together.
 const MOST_EMPTY_STEPS: u32 = 10_000;
@@ -34,6 +33,8 @@ struct Header {
 #[derive(Serialize, Deserialize)]
 struct Levels {
     name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    frame: Option<Frame>,
     levels: Vec<Vec<String>>,
 }
 
@@ -48,7 +49,7 @@ pub struct Voxels;
 impl Kind for Voxels {
     const FORMAT: Format = Format {
         name: "host-sim voxel trace",
-        version: 2,
+        version: 3,
         oldest: 2,
     };
     type Place = Voxel;
@@ -63,7 +64,7 @@ fn check(record: &Record, scene: &Scene) -> Result<(), Objection> {
     let places = [("a position", Some(record.at)), ("a goal", record.goal)];
     for (name, place) in places {
         if let Some(voxel @ Voxel { x, y, z }) = place
-            && scene.is_occupied(voxel).is_none()
+            && scene.content(voxel).is_none()
         {
             let expected = format!("{name} in the scene");
             return Err(wrong(expected, format!("{x},{y},{z}")));
@@ -110,7 +111,7 @@ impl VoxelTrace {
         of_robots("ends", header.stops.len())?;
         let starts = header.starts.into_iter();
         let starts: Vec<_> = starts.map(|[x, y, z]| Voxel::new(x, y, z)).collect();
-        if starts.iter().any(|&at| scene.is_occupied(at).is_none()) {
+        if starts.iter().any(|&at| scene.content(at).is_none()) {
             return Err(TraceError::Survey(
                 "a robot starts outside of the scene".into(),
             ));
@@ -158,8 +159,8 @@ impl VoxelTrace {
     fn look_again(&mut self) {
         let (scene, range) = (&self.scene, self.scenario.range);
         let visible = visible(scene, self.ways[0][0], range);
-        let mut known = HashSet::new();
-        let mut looked = HashSet::new();
+        let mut known = Marks::of(scene);
+        let mut looked = Marks::of(scene);
         let mut seen = 0;
         let mut at: Vec<Voxel> = self.ways.iter().map(|way| way[0]).collect();
         let steps = self.records.last().map_or(0, |last| last.tick + 1);
@@ -171,11 +172,11 @@ impl VoxelTrace {
             for record in records {
                 let at = at[usize::from(record.robot)];
                 // Who looks from the same place sees the same.
-                let view = looked.insert(at).then(|| look(scene, at, range));
+                let view = looked.insert(scene, at).then(|| look(scene, at, range));
                 for (voxel, occupied) in view.into_iter().flatten() {
-                    if known.insert(voxel) {
+                    if scene.is_known(voxel) && known.insert(scene, voxel) {
                         self.found.push((tick, voxel, occupied));
-                        seen += u32::from(visible.contains(&voxel));
+                        seen += u32::from(visible.contains(scene, voxel));
                     }
                 }
             }
@@ -194,7 +195,7 @@ impl VoxelTrace {
         let is_allowed =
             |leg: &&[Voxel]| scene.is_pose(leg[1]) && leg[0].distance_squared(leg[1]) <= 1;
         self.violations = legs.filter(|leg| !is_allowed(leg)).count() as u32;
-        self.visible = visible.len() as u32;
+        self.visible = visible.count();
     }
 
     /// 16 hex digits that differ if any record does.
@@ -206,8 +207,9 @@ impl VoxelTrace {
 impl Levels {
     fn of(scene: &Scene) -> Self {
         let Extent { width, height } = scene.extent();
-        let sign = |voxel| match scene.is_occupied(voxel) {
-            Some(true) => '#',
+        let sign = |voxel| match scene.content(voxel) {
+            Some(Content::Occupied) => '#',
+            Some(Content::Unknown) => '?',
             _ => '.',
         };
         let row = |y, z| {
@@ -218,6 +220,7 @@ impl Levels {
         let level = |z| (0..height as i16).map(|y| row(y, z)).collect();
         Self {
             name: scene.name().into(),
+            frame: scene.frame(),
             levels: (0..i16::from(scene.levels())).map(level).collect(),
         }
     }
@@ -240,20 +243,24 @@ impl Levels {
                 return Err(TraceError::Survey(reason));
             }
             let mut signs = level.iter().flat_map(|row| row.bytes());
-            if signs.any(|sign| sign != b'#' && sign != b'.') {
-                let reason = "the scene has signs that are neither `#` nor `.`".into();
+            if signs.any(|sign| !b"#.?".contains(&sign)) {
+                let reason = "the scene has signs that are neither `#`, `.` nor `?`".into();
                 return Err(TraceError::Survey(reason));
             }
         }
-        let is_occupied =
-            |Voxel { x, y, z }| levels[z as usize][y as usize].as_bytes()[x as usize] != b'.';
+        let content =
+            |Voxel { x, y, z }| match levels[z as usize][y as usize].as_bytes()[x as usize] {
+                b'#' => Content::Occupied,
+                b'.' => Content::Free,
+                _ => Content::Unknown,
+            };
+        if let Some(frame) = self.frame.filter(|frame| !frame.is_good()) {
+            let reason = format!("the scene lies nowhere: {frame:?}");
+            return Err(TraceError::Survey(reason));
+        }
         let extent = Extent::new(width as u16, height as u16);
-        Ok(Scene::from_fn(
-            &self.name,
-            extent,
-            levels.len() as u8,
-            is_occupied,
-        ))
+        let scene = Scene::from_contents(&self.name, extent, levels.len() as u8, content);
+        Ok(scene.framed(self.frame))
     }
 }
 
@@ -316,12 +323,12 @@ mod tests {
         for (from, to, reason) in [
             ("\n0,1,", "\n0,one,", "line 4"),
             ("\n0,1,", "\n0,2,", "digest"),
-            ("\"version\":2", "\"version\":9", "version 9"),
+            ("\"version\":3", "\"version\":9", "version 9"),
             ("\"robots\":2", "\"robots\":0", "--robots 0"),
             ("\"robots\":2", "\"robots\":4000000000", "1 to 255"),
             ("\"loss\":0.3", "\"loss\":3.0", "--loss 3"),
             ("\"range\":6", "\"range\":1", "2 to 12"),
-            ("\"levels\":[[\"#", "\"levels\":[[\"?", "neither"),
+            ("\"levels\":[[\"#", "\"levels\":[[\"!", "neither"),
             ("\"robots\":2", "\"robots\":5", "5 robots"),
             ("\"starts\":[[2,", "\"starts\":[[-2,", "starts outside"),
             ("\"range\":6", "\"range\":200", "range"),

@@ -1,0 +1,141 @@
+//! The planner of a robot, as large as its scene needs.
+
+use planner_core::radio::{FrameError, MAX_LEN};
+use planner_core::tile::TileIndex;
+use planner_core::volume::{Voxel, VoxelPatch};
+use planner_core::voxel_survey::{Config, VoxelSurvey};
+use planner_core::{Action, Extent, ExtentError, RobotId, Status};
+
+use crate::scene::{LARGEST, LEVELS, Scene};
+
+/// Largest planner that is built where everything else is; larger ones need more stack.
+#[cfg(not(target_arch = "wasm32"))]
+const MOST_ON_STACK: usize = 128 << 10;
+
+/// [`VoxelSurvey`] of any size.
+pub(super) trait Pilot: Send {
+    fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]);
+    fn tick(&mut self) -> Action<Voxel, Voxel>;
+    fn work(&self) -> u32;
+    fn resume(&mut self);
+    fn status(&self) -> Status<Voxel>;
+    fn hear(&mut self, id: RobotId, status: Status<Voxel>);
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
+    fn receive(&mut self, frame: &[u8]) -> Result<u32, FrameError>;
+    fn merge(&mut self, patch: &VoxelPatch);
+    fn patch(&self, tile: TileIndex, z: u8) -> VoxelPatch;
+    fn after(&self, tile: TileIndex, z: u8) -> (TileIndex, u8);
+    fn known_voxels(&self) -> u32;
+    fn extent(&self) -> Extent;
+    fn levels(&self) -> u8;
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW, TH, L> {
+    fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
+        self.observe(at, seen);
+    }
+
+    fn tick(&mut self) -> Action<Voxel, Voxel> {
+        self.tick()
+    }
+
+    fn work(&self) -> u32 {
+        self.work()
+    }
+
+    fn resume(&mut self) {
+        self.resume();
+    }
+
+    fn status(&self) -> Status<Voxel> {
+        self.status()
+    }
+
+    fn hear(&mut self, id: RobotId, status: Status<Voxel>) {
+        self.hear(id, status);
+    }
+
+    fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
+        self.transmit(buffer)
+    }
+
+    fn receive(&mut self, frame: &[u8]) -> Result<u32, FrameError> {
+        self.receive(frame)
+    }
+
+    fn merge(&mut self, patch: &VoxelPatch) {
+        self.merge(patch);
+    }
+
+    fn patch(&self, tile: TileIndex, z: u8) -> VoxelPatch {
+        self.volume().patch(tile, z)
+    }
+
+    fn after(&self, tile: TileIndex, z: u8) -> (TileIndex, u8) {
+        self.volume().after(tile, z)
+    }
+
+    fn known_voxels(&self) -> u32 {
+        self.volume().known_voxels()
+    }
+
+    fn extent(&self) -> Extent {
+        self.volume().extent()
+    }
+
+    fn levels(&self) -> u8 {
+        self.volume().levels()
+    }
+}
+
+/// A planner for `scene`: of the smallest of a few sizes that fits.
+///
+/// # Errors
+/// The scene is larger than the largest.
+pub(super) fn pilot(
+    scene: &Scene,
+    config: Config,
+    id: RobotId,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    let Extent { width, height } = scene.extent();
+    match (width.max(height), scene.levels()) {
+        (0..=64, 0..=24) => survey::<8, 8, 24>(scene, config, id),
+        (0..=256, 0..=64) => survey::<32, 32, 64>(scene, config, id),
+        _ => survey::<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>(
+            scene, config, id,
+        ),
+    }
+}
+
+fn survey<const TW: usize, const TH: usize, const L: usize>(
+    scene: &Scene,
+    config: Config,
+    id: RobotId,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    let (extent, levels) = (scene.extent(), scene.levels());
+    let mut survey = boxed(VoxelSurvey::<TW, TH, L>::vacant);
+    survey.reset(config, id, extent, levels)?;
+    Ok(survey)
+}
+
+/// What `make` makes, on the heap. It may be larger than the stack, over which it comes
+/// there: then a thread lends its own.
+#[cfg(not(target_arch = "wasm32"))]
+fn boxed<T: Send>(make: fn() -> T) -> Box<T> {
+    let size = size_of::<T>();
+    if size <= MOST_ON_STACK {
+        return Box::new(make());
+    }
+    std::thread::scope(|scope| {
+        let builder = std::thread::Builder::new().stack_size(8 * size);
+        let maker = builder.spawn_scoped(scope, || Box::new(make()));
+        let maker = maker.expect("there is memory for the planner's stack");
+        maker.join().expect("nothing panics in it")
+    })
+}
+
+/// The same in the browser, where only small scenes are flown in.
+#[cfg(target_arch = "wasm32")]
+fn boxed<T>(make: fn() -> T) -> Box<T> {
+    Box::new(make())
+}

@@ -1,0 +1,71 @@
+//! The free space of a scene: where robots can fly, and where they start.
+
+use planner_core::volume::Voxel;
+
+use super::{Marks, Scene};
+
+impl Scene {
+    /// The places that a robot reaches from `start`.
+    pub(super) fn reached(&self, start: Voxel) -> Marks {
+        let mut reached = Marks::of(self);
+        reached.insert(self, start);
+        self.flood(start, &mut reached);
+        reached
+    }
+
+    /// Marks what is reached from `start`, and gives all of it.
+    fn flood(&self, start: Voxel, reached: &mut Marks) -> Vec<Voxel> {
+        let mut places = vec![start];
+        let mut next = 0;
+        while let Some(&at) = places.get(next) {
+            next += 1;
+            for beside in at.beside() {
+                if self.is_pose(beside) && reached.insert(self, beside) {
+                    places.push(beside);
+                }
+            }
+        }
+        places
+    }
+
+    /// Where robots start unless told otherwise: above the ground near the north-west
+    /// corner, or wherever there is room first. In a scene from a file it is the place of
+    /// the largest room that is nearest to that corner; a room is what one can fly about in.
+    pub fn start(&self) -> Option<Voxel> {
+        let corner = Voxel::new(2, 2, 2);
+        let distance = |voxel: &Voxel| voxel.distance_squared(corner);
+        if self.frame.is_none() {
+            let places = self.voxels().filter(|at| at.z >= 2 && self.is_pose(*at));
+            return places.min_by_key(distance);
+        }
+        let mut reached = Marks::of(self);
+        let mut largest = Vec::new();
+        for at in self.voxels() {
+            if self.is_pose(at) && reached.insert(self, at) {
+                let room = self.flood(at, &mut reached);
+                if room.len() > largest.len() {
+                    largest = room;
+                }
+            }
+        }
+        largest.into_iter().min_by_key(distance)
+    }
+
+    /// The place for a robot that is nearest to `voxel`.
+    pub fn nearest_pose(&self, voxel: Voxel) -> Option<Voxel> {
+        let places = self.voxels().filter(|at| self.is_pose(*at));
+        places.min_by_key(|at| at.distance_squared(voxel))
+    }
+
+    /// How many voxels that the scene does not know lie beside a free one that `is_seen`
+    /// has: there the scan ends.
+    pub(crate) fn edge(&self, is_seen: impl Fn(Voxel) -> bool) -> u32 {
+        use planner_core::volume::Content::{Free, Unknown};
+        let is_edge = |voxel: &Voxel| {
+            let mut beside = voxel.beside().into_iter();
+            self.content(*voxel) == Some(Unknown)
+                && beside.any(|at| self.content(at) == Some(Free) && is_seen(at))
+        };
+        self.voxels().filter(is_edge).count() as u32
+    }
+}

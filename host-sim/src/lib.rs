@@ -20,6 +20,7 @@ pub mod draw;
 mod excerpt;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod experiments;
+pub mod export;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod files;
 pub mod fleet;

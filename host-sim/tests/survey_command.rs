@@ -234,14 +234,27 @@ fn a_scan_is_surveyed_voxel_by_voxel_and_its_map_lies_where_it_does() {
     rooms()
         .write(fs::File::create(path.join("rooms.bt")).unwrap())
         .unwrap();
-    let arguments =
-        "--scene rooms.bt --robots 2 --range 4 --start -1.55,0.45,0.35 --json --out out";
+    let arguments = "--scene rooms.bt --robots 2 --range 4 --start -1.55,0.45,0.35 --speed 0.5 \
+                     --home 60,-1 --json --out out";
     let assert = survey(path, arguments).assert().success();
     let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
     assert_eq!(summary["map"], "rooms");
     assert_eq!(summary["complete"], true);
     assert_eq!(summary["voxel_size"], 0.1);
     assert_eq!(summary["robots"][0]["start"], serde_json::json!([5, 4, 4]));
+    let (ticks, steps) = (&summary["ticks"], &summary["robots"][1]["steps"]);
+    let times = |value: &Value, factor: f64| value.as_f64().unwrap() * factor;
+    assert!((times(&summary["seconds"], 1.0) - times(ticks, 0.2)).abs() < 1e-9);
+    assert!((times(&summary["robots"][1]["metres"], 1.0) - times(steps, 0.1)).abs() < 1e-9);
+    let plan: Value =
+        serde_json::from_slice(&fs::read(path.join("out/mission-1.plan")).unwrap()).unwrap();
+    assert_eq!(plan["mission"]["hoverSpeed"], 0.5);
+    let way = fs::read_to_string(path.join("out/mission-1.waypoints")).unwrap();
+    let items = plan["mission"]["items"].as_array().unwrap().len();
+    assert_eq!(way.lines().count(), items + 2);
+    let cloud = fs::read_to_string(path.join("out/map.ply")).unwrap();
+    let seen = format!("element vertex {}\n", cloud.lines().count() - 8);
+    assert!(cloud.contains(&seen), "{seen}");
     // Of both rooms two ends are not in the scan.
     let ends = 2 * 7 * (9 + 11);
     assert_eq!(summary["edge_cells"], ends);
@@ -308,6 +321,15 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
         ("--scene cloud.las", ["cloud.las", "expected an OctoMap"]),
         ("--start 1,1,1", ["--start", "--scene"]),
         ("--voxel-size 2", ["--voxel-size", "--scene"]),
+        (
+            "--scene rooms.bt --speed 0",
+            ["--speed 0", "metres a second"],
+        ),
+        (
+            "--scene rooms.bt --home 91,0",
+            ["--home", "LATITUDE,LONGITUDE"],
+        ),
+        ("--home 1,1", ["--home", "--scene"]),
     ] {
         assert_refused(path, arguments, &words);
     }

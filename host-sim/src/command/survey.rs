@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw::{Coverage, animate, oblique_view, oblique_voxels, top_view, write_png};
+use host_sim::export::{self, Home};
 use host_sim::run::heights::open;
 use host_sim::run::voxels::Simulation;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -31,6 +32,9 @@ const SIDE: u16 = 100;
 /// The same of a town of voxels, and the largest.
 const TOWN: u16 = 64;
 
+/// Metres a second in missions, unless said otherwise.
+const USUAL_SPEED: f64 = 1.0;
+
 #[derive(Args)]
 pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
@@ -52,6 +56,19 @@ pub(crate) struct Survey {
     /// voxels in a town. Default: in the largest room, as far to the north-west as one can.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     start: Option<Start>,
+    /// How fast robots fly in the --scene, in metres a second: the summary has seconds then.
+    #[arg(long, value_name = "M/S", requires = "scene")]
+    speed: Option<f64>,
+    /// Writes the way of each robot in the --scene as a MAVLink mission, mission-N.plan and
+    /// mission-N.waypoints; the origin of the file lies at this latitude and longitude, x
+    /// leads east and y north.
+    #[arg(
+        long,
+        value_name = "LAT,LON",
+        requires = "scene",
+        allow_hyphen_values = true
+    )]
+    home: Option<Home>,
     /// Columns along a side of a terrain drawn by a seed: 8 to 512, default 100; of a town
     /// of voxels 8 to 64, default 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(8..=512))]
@@ -164,7 +181,7 @@ impl Survey {
         }
         bar.finish_and_clear();
         let trace = run.finish();
-        let summary = VoxelSummary::new(&trace);
+        let summary = VoxelSummary::new(&trace).at_speed(self.speed);
         let json = serde_json::to_string_pretty(&summary)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
@@ -178,6 +195,20 @@ impl Survey {
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
+        folder.write("map.ply", |file| Ok(export::ply(&trace, file)?))?;
+        for robot in 0..trace.ways.len() {
+            let Some((home, way)) = self.home.zip(export::way_in_metres(&trace, robot)) else {
+                continue;
+            };
+            let plan = export::plan(&way, home, self.speed.unwrap_or(USUAL_SPEED));
+            let plan = serde_json::to_string_pretty(&plan)?;
+            folder.write(format!("mission-{robot}.plan"), |file| {
+                Ok(writeln!(file, "{plan}")?)
+            })?;
+            folder.write(format!("mission-{robot}.waypoints"), |file| {
+                Ok(export::waypoints(&way, home, file)?)
+            })?;
+        }
         let path = folder.path().to_path_buf();
         folder.close()?;
         match self.output.json {
@@ -206,6 +237,11 @@ impl Survey {
             return Err(format!(
                 "--{option} does not apply in a town of voxels, where one planner flies a voxel \
                  a step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
+            ));
+        }
+        if let Some(speed) = self.speed.filter(|speed| !(0.01..=100.0).contains(speed)) {
+            return Err(format!(
+                "--speed {speed}: expected 0.01 to 100 metres a second"
             ));
         }
         if let Some(size) = self.size.filter(|&size| size > TOWN) {
@@ -329,6 +365,13 @@ fn print_voxels(summary: &VoxelSummary, out: &Path) {
             robot.bytes_sent,
             state(robot.alive, robot.stop_reason.as_deref()),
         );
+    }
+    if let Some((seconds, speed)) = summary.seconds.zip(summary.speed) {
+        println!("  time               {seconds:.0} s at {speed} m/s");
+    }
+    let metres = summary.robots.iter().filter_map(|robot| robot.metres);
+    if let Some(most) = metres.reduce(f64::max) {
+        println!("  longest way        {most:.1} m");
     }
     if summary.edge_cells > 0 {
         println!(

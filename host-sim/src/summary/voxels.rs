@@ -27,6 +27,10 @@ pub struct Summary {
     pub range: u8,
     /// Side of a voxel in metres, where the scene says so.
     pub voxel_size: Option<f64>,
+    /// How fast robots fly, in metres a second, if that was said.
+    pub speed: Option<f64>,
+    /// How long the run took at that speed.
+    pub seconds: Option<f64>,
     /// Voxels that the scene itself does not know, beside free ones that were seen.
     pub edge_cells: u32,
     /// Robot by robot.
@@ -40,6 +44,8 @@ pub struct RobotSummary {
     pub start: (i16, i16, i16),
     /// Flights.
     pub steps: usize,
+    /// Their length, where the scene has metres.
+    pub metres: Option<f64>,
     /// Voxels on its own map.
     pub cells_known: u32,
     /// Work of its planner over the run.
@@ -85,8 +91,20 @@ impl Summary {
             planner: "voxel-survey",
             range: scenario.range,
             voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
+            speed: None,
+            seconds: None,
             edge_cells: trace.edge(),
             robots: robots.collect(),
+        }
+    }
+
+    /// The same with the seconds that steps of a voxel take at `speed`, in metres a second.
+    pub fn at_speed(self, speed: Option<f64>) -> Self {
+        let step = self.voxel_size.zip(speed).map(|(size, speed)| size / speed);
+        Self {
+            speed,
+            seconds: step.map(|seconds| seconds * f64::from(self.head.ticks)),
+            ..self
         }
     }
 }
@@ -100,9 +118,12 @@ impl RobotSummary {
         };
         let faults = &trace.scenario.conditions.faults;
         let last = trace.seen.len() as u32 - 1;
+        let steps = way.windows(2).filter(|leg| leg[0] != leg[1]).count();
+        let frame = trace.scene.frame();
         Self {
             start: (way[0].x, way[0].y, way[0].z),
-            steps: way.windows(2).filter(|leg| leg[0] != leg[1]).count(),
+            steps,
+            metres: frame.map(|frame| steps as f64 * frame.voxel_size),
             cells_known: own().next_back().map_or(0, |record| record.known),
             work: own().map(|record| u64::from(record.work)).sum(),
             frames_sent: own().map(|record| record.sent.frames).sum(),

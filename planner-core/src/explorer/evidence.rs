@@ -18,7 +18,7 @@ use super::window::Window;
 /// How far the looks of a sensor can be believed.
 ///
 /// If votes are independent and wrong with probability `p < ½`, a decision at margin `n`
-/// is wrong with `1 / (1 + ((1 - p) / p)ⁿ)` (Wald's sequential test):
+/// is wrong with `1 / (1 + ((1 - p) / p)ⁿ)` (Wald's sequential test \[Wald1945\]):
 ///
 /// | wrong looks | margin 1 | 2 | 3 |
 /// |---|---|---|---|

@@ -37,8 +37,8 @@ const USUAL_SPEED: f64 = 1.0;
 
 #[derive(Args)]
 pub(crate) struct Survey {
-    /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell) or an
-    /// OctoMap .bt or .ot file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
+    /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell), an ESRI ASCII
+    /// grid (.asc, metres) or an OctoMap .bt or .ot file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
     /// rooms and bridges: there another planner flies, a voxel a step, and --planner,
     /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]

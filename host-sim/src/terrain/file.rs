@@ -1,4 +1,4 @@
-//! Terrains out of files: grey images and OctoMap trees, told apart by their content.
+//! Terrains out of files: grey images, OctoMap trees and ASCII grids, told apart by their content.
 
 use std::io::{self, Cursor};
 use std::path::Path;
@@ -11,6 +11,7 @@ use thiserror::Error;
 
 use super::Terrain;
 use super::foreign::foreign;
+use super::grid::{from_grid, is_grid};
 use crate::bytes::{self, Unread};
 use crate::scene::octree::{Cube, OcTree};
 
@@ -21,7 +22,7 @@ pub(crate) const LARGEST: u32 = 512;
 const MOST_BYTES: u64 = 64 << 20;
 
 /// Highest relief in whole cells that [`Height`] can tell.
-const HIGHEST: u32 = 63;
+pub(super) const HIGHEST: u32 = 63;
 
 /// A terrain that cannot be had from a file, said so that the reader can mend it.
 #[derive(Debug, Error)]
@@ -61,6 +62,13 @@ pub enum TerrainError {
          -colorspace gray -depth 8 OUT.png`"
     )]
     Pixel { x: u32, y: u32, what: &'static str },
+    #[error("line {line} of the ASCII grid: expected {expected}")]
+    Grid { line: usize, expected: String },
+    #[error(
+        "the highest place lies {relief:.1} cells over the lowest; expected at most {HIGHEST}: \
+         take wider cells, for example with `gdalwarp -tr`"
+    )]
+    Relief { relief: f64 },
     #[error("no voxel is occupied; expected ground to fly over")]
     NoGround,
     #[error(
@@ -72,7 +80,7 @@ pub enum TerrainError {
 
 /// What is read.
 const READ: &str = "a grey PNG or PGM, whose shades are heights in quarters of a cell, or an \
-                    OctoMap .bt or .ot tree";
+                    OctoMap .bt or .ot tree, or an ESRI ASCII grid of metres";
 
 impl From<Unread> for TerrainError {
     fn from(unread: Unread) -> Self {
@@ -108,6 +116,9 @@ impl Terrain {
         }
         if OcTree::is_tree(bytes) {
             return from_tree(&OcTree::read(bytes).map_err(TerrainError::BrokenTree)?);
+        }
+        if is_grid(bytes) {
+            return from_grid(bytes);
         }
         match image::guess_format(bytes) {
             Ok(format @ (ImageFormat::Png | ImageFormat::Pnm)) => from_image(bytes, format),
@@ -185,7 +196,7 @@ fn from_tree(tree: &OcTree) -> Result<Terrain, TerrainError> {
     }))
 }
 
-fn fitting((width, height): (u32, u32)) -> Result<Extent, TerrainError> {
+pub(super) fn fitting((width, height): (u32, u32)) -> Result<Extent, TerrainError> {
     let sides = 1..=LARGEST;
     match sides.contains(&width) && sides.contains(&height) {
         true => Ok(Extent::new(width as u16, height as u16)),

@@ -16,13 +16,13 @@ const CLOUD: &str = "make an octree of it, for example with ROS's octomap_server
                      octomap_saver, and give its .bt file";
 const MESH: &str = "make voxels of it and an octree of these: `binvox IN`, then `binvox2bt \
                     IN.binvox`, and give the .bt file";
-const RASTER: &str = "save its heights, in quarters of a cell, as greys: `gdal_translate -ot \
-                      Byte -scale -of PNG IN OUT.png`";
+const RASTER: &str = "make an ASCII grid of its heights in metres, of at most 512×512 cells: \
+                      `gdal_translate -of AAIGrid -outsize 512 0 IN OUT.asc`";
 const MAP: &str = "`host-sim explore` reads it; a survey needs heights";
 const PACKED: &str = "unpack it and give the file in it";
 
 /// What files begin with.
-const BEGINNINGS: [(&[u8], &str, &str); 24] = [
+const BEGINNINGS: [(&[u8], &str, &str); 23] = [
     (b"# .PCD", "a PCD point cloud", CLOUD),
     (b"VERSION .7", "a PCD point cloud", CLOUD),
     (b"VERSION 0.7", "a PCD point cloud", CLOUD),
@@ -41,7 +41,6 @@ const BEGINNINGS: [(&[u8], &str, &str); 24] = [
     (b"II*\0", "a TIFF picture", RASTER),
     (b"MM\0*", "a TIFF picture", RASTER),
     (b"RIFF", "a WebP picture", GREYS),
-    (b"ncols", "an ASCII grid", RASTER),
     (b"%PDF", "a PDF document", GREYS),
     (
         b"{",

@@ -2,6 +2,7 @@
 
 mod file;
 mod foreign;
+mod grid;
 mod look;
 mod source;
 

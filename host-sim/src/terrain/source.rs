@@ -15,8 +15,8 @@ pub enum TerrainSource {
     Urban(u64),
     /// A town of voxels drawn by a seed: see [`TerrainSource::scene`].
     Town(u64),
-    /// An image whose grey values are heights in quarters of a cell, or an OctoMap
-    /// `.bt` file, of which the highest occupied voxel of each column counts: see
+    /// An image whose grey values are heights in quarters of a cell, an ESRI ASCII grid of
+    /// metres, or an OctoMap tree, of which the highest occupied voxel of each column counts: see
     /// [`Terrain::read`].
     File(PathBuf),
 }

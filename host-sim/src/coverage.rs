@@ -1,7 +1,9 @@
 //! How much of the world has been seen, and by how many.
 
+use planner_core::Cell;
 use planner_core::tile::TileIndex;
 
+use crate::scenario::grid::Scenario;
 use crate::sensor::{View, tile_columns};
 use crate::world::{Reachable, World};
 
@@ -35,10 +37,30 @@ impl Coverage {
         }
     }
 
+    /// A run before its first tick: what its robots know was seen before.
+    pub(crate) fn of(scenario: &Scenario, reachable: &Reachable) -> Self {
+        let world = &scenario.world;
+        let mut coverage = Self::new(world, reachable, scenario.starts.len());
+        let columns = tile_columns(world);
+        let bit = |cell: Cell| {
+            let (tile, bit) = TileIndex::of(cell)?;
+            Some((usize::from(tile.y) * columns + usize::from(tile.x), bit))
+        };
+        for (robot, known) in scenario.known().into_iter().enumerate() {
+            let known: Vec<_> = known.into_iter().filter_map(bit).collect();
+            coverage.see(robot, &known);
+        }
+        coverage
+    }
+
     /// A robot looks around.
     pub(crate) fn look(&mut self, robot: usize, view: &View) {
+        self.see(robot, &view.free);
+    }
+
+    fn see(&mut self, robot: usize, cells: &[(usize, u64)]) {
         let own = &mut self.by_robot[robot];
-        for &(tile, free) in &view.free {
+        for &(tile, free) in cells {
             let new = free & self.reachable[tile] & !own[tile];
             if new == 0 {
                 continue;

@@ -35,6 +35,7 @@ pub mod planners;
 pub mod record;
 pub mod robot;
 pub mod run;
+mod saves;
 pub mod scans;
 pub mod scenario;
 pub mod scene;

@@ -108,6 +108,11 @@ impl PlannerKind {
         self == Self::Explorer
     }
 
+    /// Whether its state can be saved, and restored.
+    pub fn is_saved(self) -> bool {
+        self == Self::Explorer
+    }
+
     /// Whether it can be told what to keep out of.
     pub fn keeps_out(self) -> bool {
         self == Self::Explorer

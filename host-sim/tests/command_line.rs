@@ -534,6 +534,38 @@ mod outputs {
     }
 
     #[test]
+    fn an_interrupted_exploration_is_saved_if_asked() {
+        let folder = folder();
+        let large = [
+            "generate",
+            "perfect-maze",
+            "--size=300x300",
+            "--output=large.png",
+        ];
+        host_sim(folder.path(), &large).assert().success();
+        let arguments = ["explore", "large.png", "--robots=1", "--save=half"];
+        let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_host-sim"))
+            .current_dir(folder.path())
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // It listens before it makes the folder.
+        let begin = Instant::now();
+        while !folder.path().join("out/large").exists() {
+            assert!(begin.elapsed() < Duration::from_secs(60));
+            sleep(Duration::from_millis(20));
+        }
+        interrupt(&child);
+        assert_eq!(child.wait().unwrap().code(), Some(1));
+        let picture = fs::read(folder.path().join("out/large/explored.png"));
+        assert!(picture.unwrap().starts_with(b"\x89PNG"));
+        let rest = ["explore", "large.png", "--robots=1", "--restore=half"];
+        host_sim(folder.path(), &rest).assert().success();
+    }
+
+    #[test]
     fn a_file_without_an_end_is_refused() {
         let folder = folder();
         std::os::unix::fs::symlink("/dev/zero", folder.path().join("a.txt")).unwrap();
@@ -619,4 +651,42 @@ fn logs_of_scans_are_scored_and_drawn() {
         &["corridor.log", "corridor.log", "--cell-size=0.1"],
         &["two logs are called corridor"],
     );
+}
+
+#[test]
+fn explorations_are_saved_and_restored() {
+    let folder = folder();
+    let explore = |arguments: &[&str]| {
+        host_sim(
+            folder.path(),
+            &[&["explore", "rooms.txt"], arguments].concat(),
+        )
+    };
+    let half = ["--max-ticks=3", "--save=fleet", "--out=first"];
+    explore(&half).assert().code(1);
+    // What is saved and restored may be one file.
+    let rest = ["--restore=fleet", "--save=fleet", "--out=rest", "--json"];
+    let output = explore(&rest).assert().success();
+    let summary: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(summary["complete"], true);
+    let bad = |arguments: &[&str], words: &[&str]| {
+        let arguments = [&["explore", "rooms.txt"], arguments].concat();
+        assert_bad_input(folder.path(), &arguments, words);
+    };
+    bad(&["--restore=none"], &["--restore none", "No such file"]);
+    bad(&["--restore=rooms.txt"], &["rooms.txt: is no save"]);
+    bad(
+        &["--restore=fleet", "--robots=2"],
+        &["fleet: is of a fleet of 3 robots", "--robots 3"],
+    );
+    bad(&["--save=x", "--planner=greedy"], &["--save", "greedy"]);
+    bad(
+        &["--restore=fleet", "--planner=minpos"],
+        &["--restore", "minpos"],
+    );
+    bad(&["--restore=fleet", "--start=corner"], &["--start"]);
+    let mut damaged = fs::read(folder.path().join("fleet")).unwrap();
+    damaged[100] ^= 1;
+    fs::write(folder.path().join("fleet"), damaged).unwrap();
+    bad(&["--restore=fleet"], &["fleet: is damaged"]);
 }

@@ -1,6 +1,9 @@
 //! `host-sim explore`.
 
 use std::error::Error;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::Read;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -12,10 +15,10 @@ use host_sim::files;
 use host_sim::measured::Measured;
 use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
-use host_sim::run::{self, Options, Outcome, Progress};
+use host_sim::run::{self, Options, Outcome, Progress, Stepping};
 use host_sim::scans::Laser;
 use host_sim::scenario::grid::Scenario;
-use host_sim::scenario::{ConditionsArgs, MediumKind, MotionArgs};
+use host_sim::scenario::{ConditionsArgs, MediumKind, MotionArgs, Save, ScenarioError};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
 use host_sim::world::{ReadOptions, Scale, Starts, World};
@@ -24,9 +27,12 @@ use planner_core::Cell;
 use super::output::OutputArgs;
 use super::report;
 use super::{Done, left_out, tell_notes};
+use crate::interrupt;
 
 /// Seed of all chance unless said otherwise.
 const SEED: u64 = 1;
+/// Bytes of a save that are read: more than 255 robots on the largest map take.
+const MOST_SAVE: u64 = 64 << 20;
 
 #[derive(Args)]
 pub(crate) struct Explore {
@@ -73,6 +79,14 @@ pub(crate) struct Explore {
     /// open: maps, poses, goals and scans. Compile with `--features mcap`.
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
+    /// Also write what the planners know when the run ends, for --restore. The first Ctrl-C
+    /// ends the run then. The explorer's alone.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Go on from a file of --save: in the same map, with as many robots, from where they
+    /// were.
+    #[arg(long, value_name = "FILE", conflicts_with = "start")]
+    restore: Option<PathBuf>,
     #[command(flatten)]
     motion: MotionArgs,
     #[command(flatten)]
@@ -133,6 +147,7 @@ impl Explore {
         let world = Arc::new(World::read(&self.map, &self.read_options())?);
         tell_notes(&self.map, &world);
         let scenario = self.scenario(world)?;
+        let end = self.save.is_some().then(interrupt::ask_for_end);
         let mut folder = self.output.folder(scenario.world.name())?;
 
         let cells = scenario.reachable().count();
@@ -141,9 +156,13 @@ impl Explore {
             bar.set_position(progress.seen_cells.into());
             bar.set_message(format!("tick {}", progress.ticks));
         };
+        let mut save = None;
+        let mut ended = |run: &dyn Stepping| save = run.save();
         let options = Options {
             trace: true,
             progress: Some(&mut advance),
+            end,
+            ended: Some(&mut ended),
             ..Options::default()
         };
         let (outcome, trace, measured) = run(&scenario, options)?;
@@ -163,6 +182,11 @@ impl Explore {
             let mut log = Vec::new();
             Laser::default().log(&trace).write(&mut log)?;
             files::write(scans, &log).map_err(|error| format!("{}: {error}", scans.display()))?;
+        }
+        if let Some(path) = &self.save {
+            let text = save.ok_or("the planners cannot be saved")?.to_text();
+            files::write(path, text.as_bytes())
+                .map_err(|error| format!("{}: {error}", path.display()))?;
         }
         #[cfg(feature = "mcap")]
         if let Some(path) = &self.mcap {
@@ -220,7 +244,11 @@ impl Explore {
     }
 
     fn scenario(&self, world: Arc<World>) -> Result<Scenario, Box<dyn Error>> {
-        let starts = self.starts(&world)?;
+        let restored = self.restored(&world)?.map(Arc::new);
+        let starts = match &restored {
+            Some(save) => Starts::At(save.positions()),
+            None => self.starts(&world)?,
+        };
         let motion = self.motion.motion(&world, self.clearance)?;
         let solid = self.solid || motion.is_some();
         let starts = match self.clearance {
@@ -233,11 +261,43 @@ impl Explore {
         scenario.solid = solid;
         scenario.clearance = self.clearance;
         scenario.move_in_metres(motion);
+        scenario.restored = restored;
+        if self.save.is_some() && !self.planner.is_saved() {
+            let (option, planner) = ("save", self.planner);
+            return Err(ScenarioError::NeverSaved { option, planner }.into());
+        }
         scenario.conditions.medium = MediumKind::Radio;
         scenario.conditions.seed = SEED;
         self.conditions.clone().set(&mut scenario.conditions)?;
         scenario.check()?;
         Ok(scenario)
+    }
+
+    /// The save to go on from, if one is named and fits.
+    fn restored(&self, world: &World) -> Result<Option<Save>, String> {
+        let Some(path) = &self.restore else {
+            return Ok(None);
+        };
+        let wrong = |problem: &dyn Display| format!("--restore {}: {problem}", path.display());
+        let mut bytes = Vec::new();
+        let read = File::open(path).and_then(|file| {
+            // Longer is none: a device without an end is not read to it.
+            file.take(MOST_SAVE).read_to_end(&mut bytes)
+        });
+        read.map_err(|error| wrong(&error))?;
+        let save = Save::parse(&bytes).map_err(|error| wrong(&error))?;
+        if self.planner.is_saved() {
+            let fits = save.check(world, self.planner, self.robots.into());
+            fits.map_err(|error| wrong(&error))?;
+        }
+        Ok(Some(save))
+    }
+
+    /// The option of saves, if one is given.
+    #[cfg(unix)]
+    pub(super) fn of_saves(&self) -> Option<&'static str> {
+        let restore = self.restore.is_some().then_some("restore");
+        restore.or(self.save.is_some().then_some("save"))
     }
 
     fn starts(&self, world: &World) -> Result<Starts, &'static str> {

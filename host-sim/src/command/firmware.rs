@@ -36,6 +36,9 @@ impl Firmware {
                 format!("--{option}: the image is told of no such cells; explore is").into(),
             );
         }
+        if let Some(option) = self.explore.of_saves() {
+            return Err(format!("--{option}: the image saves nothing; explore does").into());
+        }
         let image = self.image.unwrap_or_else(|| self.machine.image());
         let swarm = Swarm::new(self.machine, image);
         self.explore.run_by(|scenario, options| {

@@ -30,12 +30,20 @@ impl<'a> Replay<'a> {
     pub fn new(trace: &'a Trace) -> Self {
         let scenario = &trace.scenario;
         let world = &scenario.world;
+        let reachable = scenario.reachable();
+        let mut seen = vec![false; world.extent().cells() as usize];
+        let mut seen_cells = 0;
+        for cell in scenario.known().into_iter().flatten() {
+            let seen = &mut seen[index(world.extent(), cell)];
+            seen_cells += u32::from(!*seen && reachable.contains(cell));
+            *seen = true;
+        }
         Self {
             trace,
             senses: Senses::of(scenario, scenario.sensor()),
-            reachable: scenario.reachable(),
-            seen: vec![false; world.extent().cells() as usize],
-            seen_cells: 0,
+            reachable,
+            seen,
+            seen_cells,
             mistaken: vec![false; world.extent().cells() as usize],
             positions: scenario.starts.clone(),
             next: 0,

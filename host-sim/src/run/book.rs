@@ -69,7 +69,7 @@ impl Book {
             touches: Touches::default(),
         };
         Self {
-            coverage: Coverage::new(&scenario.world, &reachable, robots),
+            coverage: Coverage::of(scenario, &reachable),
             senses: Senses::of(scenario, sensor),
             reachable,
             looked_from: vec![None; robots],
@@ -157,13 +157,14 @@ impl Book {
         outcome.violations = fleet.violations().to_vec();
         outcome.touches = fleet.touches();
         let unheard = unheard(fleet);
+        let homes = scenario.homes();
         for (robot, &start) in fleet.robots().iter().zip(&scenario.starts) {
             let noted = &mut outcome.robots[usize::from(robot.id.0)];
             noted.alive = robot.alive;
             noted.driven = fleet.driven(robot.id.0.into());
             // Where bodies exchange roles, those that come home may have started elsewhere.
-            noted.is_home = robot.position == start
-                || scenario.solid && scenario.starts.contains(&robot.position);
+            noted.is_home = robot.position == homes[usize::from(robot.id.0)]
+                || scenario.solid && homes.contains(&robot.position);
             noted.is_lost = robot.planner.is_lost();
             noted.hearsay = robot.planner.hearsay();
             noted.cells_known = robot.planner.map().known_cells();

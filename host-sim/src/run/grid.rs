@@ -1,8 +1,10 @@
 //! Runs in a grid of cells.
 
+use std::cell::RefCell;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use planner_core::{AnyPlanner, Extent};
+use planner_core::{AnyPlanner, Extent, RobotId};
 
 use super::{Outcome, Progress, Running, Stepping};
 use crate::baselines::{Bmilrv, Marks};
@@ -14,6 +16,9 @@ use crate::scenario::ScenarioError;
 use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
 
+/// Looks at a run that is over.
+type Ended<'a> = &'a mut dyn FnMut(&dyn Stepping);
+
 /// How a scenario is run; changes nothing of what happens.
 #[derive(Default)]
 pub struct Options<'a> {
@@ -23,6 +28,10 @@ pub struct Options<'a> {
     pub trace: bool,
     /// Called after every tick.
     pub progress: Option<&'a mut dyn FnMut(Progress)>,
+    /// When it is set, the run ends after the tick.
+    pub end: Option<&'a AtomicBool>,
+    /// Called with the run when it is over.
+    pub ended: Option<Ended<'a>>,
 }
 
 /// Where the planners of a run are.
@@ -144,7 +153,12 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
         (PlannerKind::Bmilrv, Some(&start)) => Some(Marks::new(extent, start)),
         _ => None,
     };
-    let build = Box::new(move |id, start| -> Box<dyn AnyPlanner<TW, TH>> {
+    // For the first planner of each robot; one that restarts has lost what it knew.
+    let saved: Vec<_> = { scenario.restored.iter() }
+        .flat_map(|save| save.planners().map(Some))
+        .collect();
+    let saved = RefCell::new(saved);
+    let build = Box::new(move |id: RobotId, start| -> Box<dyn AnyPlanner<TW, TH>> {
         if let Some(marks) = &marks {
             let robot = Bmilrv::new(marks.clone(), id, extent, start, link);
             return Box::new(robot.expect("the compiled size holds the world"));
@@ -159,6 +173,13 @@ pub(super) fn fleet_on<const TW: usize, const TH: usize>(
             mission,
         };
         let mut planner = host.planner(kind, setup);
+        let save = saved
+            .borrow_mut()
+            .get_mut(usize::from(id.0))
+            .and_then(Option::take);
+        if let Some(save) = save {
+            planner.restore(&save).expect("the save was checked");
+        }
         if kept_out.is_some() {
             let kept_out = planner.keep_out(kept_out);
             kept_out.expect("the planner can, and its start was checked");
@@ -188,10 +209,14 @@ fn compiled_on<const TW: usize, const TH: usize>(
 ) -> (Outcome, Option<Trace>) {
     let mut running = Running::<TW, TH>::new(host, scenario, options.sensor, options.trace);
     let mut progress = options.progress;
-    while !host.has_failed() && running.tick() {
+    let is_ended = || options.end.is_some_and(|end| end.load(Ordering::Relaxed));
+    while !host.has_failed() && !is_ended() && running.tick() {
         if let Some(progress) = &mut progress {
             progress(running.progress());
         }
+    }
+    if let Some(ended) = options.ended {
+        ended(&running);
     }
     running.end()
 }

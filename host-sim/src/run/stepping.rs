@@ -13,6 +13,7 @@ use crate::fleet::Fleet;
 use crate::medium::Message;
 use crate::record::grid::{Record, Trace};
 use crate::robot::{Robot, Step};
+use crate::saves::Save;
 use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
 
@@ -135,6 +136,8 @@ pub trait Stepping {
     fn messages(&self) -> &[Message];
     /// What happened up to now.
     fn outcome(&self) -> Outcome;
+    /// What the planners know, to go on from; `None` where they cannot be saved.
+    fn save(&self) -> Option<Save>;
 }
 
 impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
@@ -211,5 +214,11 @@ impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
 
     fn outcome(&self) -> Outcome {
         self.book.outcome(&self.scenario, &self.fleet)
+    }
+
+    fn save(&self) -> Option<Save> {
+        let robots = self.fleet.robots().iter().zip(self.scenario.homes());
+        let robots = robots.map(|(robot, home)| (robot.position, home, &*robot.planner));
+        Save::of(&self.scenario.world, robots)
     }
 }

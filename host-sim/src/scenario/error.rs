@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::Preset;
 use crate::planners::PlannerKind;
+use crate::saves::SaveError;
 use crate::sensor::ALL_AROUND;
 
 /// A scenario that cannot be run, said so that the reader can mend it.
@@ -65,6 +66,13 @@ pub enum ScenarioError {
          them there; start it elsewhere (--start X,Y)"
     )]
     StartKeptOut { robot: usize, start: Cell },
+    #[error("--{option}: planner {planner} cannot be saved; the explorer can")]
+    NeverSaved {
+        option: &'static str,
+        planner: PlannerKind,
+    },
+    #[error("the save {0}")]
+    Save(#[from] SaveError),
     #[error("robot {robot} starts at {start}, which is no free cell of the world")]
     Start { robot: usize, start: Cell },
     #[error("robots {first} and {second} both start at {start}, but no two may share a cell")]

@@ -7,6 +7,7 @@ use planner_core::{Cell, sight};
 
 use super::{Conditions, Motion, Preset, ScenarioError};
 use crate::planners::PlannerKind;
+use crate::saves::{Save, SaveError};
 use crate::sensor::{ALL_AROUND, Sensor};
 use crate::world::{Reachable, World};
 
@@ -34,6 +35,8 @@ pub struct Scenario {
     /// How bodies move, in metres and seconds; `None`: a cell a tick. Where robots are
     /// neither solid nor have a clearance, they pass through each other.
     pub motion: Option<Motion>,
+    /// What its robots know when they start; `None`: nothing.
+    pub restored: Option<Arc<Save>>,
     /// What all worlds share.
     pub conditions: Conditions,
 }
@@ -53,6 +56,7 @@ impl Scenario {
             solid: false,
             clearance: 0,
             motion: None,
+            restored: None,
             conditions: Conditions::new(0, max_ticks),
         }
     }
@@ -115,6 +119,7 @@ impl Scenario {
         }
         self.check_fault_cells()?;
         self.check_limits()?;
+        self.check_save()?;
         for (robot, &start) in self.starts.iter().enumerate() {
             if !self.world.is_free(start) {
                 return Err(ScenarioError::Start { robot, start });
@@ -227,15 +232,51 @@ impl Scenario {
                 });
             }
         }
-        let is_kept_out =
-            |start: &Cell| body_cells(self.clearance, *start).any(|cell| limits.keeps_out(cell));
-        match self.starts.iter().position(is_kept_out) {
+        match { self.starts.iter() }.position(|start| self.is_kept_out(*start)) {
             Some(robot) => Err(ScenarioError::StartKeptOut {
                 robot,
                 start: self.starts[robot],
             }),
             None => Ok(()),
         }
+    }
+
+    fn check_save(&self) -> Result<(), ScenarioError> {
+        let Some(save) = &self.restored else {
+            return Ok(());
+        };
+        let planner = self.planner;
+        if !planner.is_saved() {
+            let option = "restore";
+            return Err(ScenarioError::NeverSaved { option, planner });
+        }
+        save.check(&self.world, planner, self.starts.len())?;
+        let homes = save.homes();
+        match homes.iter().position(|home| self.is_kept_out(*home)) {
+            Some(robot) => {
+                let home = homes[robot];
+                Err(SaveError::HomeKeptOut { robot, home }.into())
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a body in this cell touches what robots keep out of.
+    fn is_kept_out(&self, at: Cell) -> bool {
+        let limits = &self.conditions.limits;
+        body_cells(self.clearance, at).any(|cell| limits.keeps_out(cell))
+    }
+
+    /// Where each robot began to explore: where it starts, unless it goes on from a save.
+    pub fn homes(&self) -> Vec<Cell> {
+        let saved = self.restored.as_ref();
+        saved.map_or_else(|| self.starts.clone(), |save| save.homes())
+    }
+
+    /// The cells that each robot knows when it starts, if it goes on from a save.
+    pub(crate) fn known(&self) -> Vec<Vec<Cell>> {
+        let saved = self.restored.as_ref();
+        saved.map_or_else(Vec::new, |save| save.known(&self.world, self.planner))
     }
 
     /// What its robots can reach: with a body, the cells that it can sweep.

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 pub use crate::limits::{Area, Limits, LimitsArgs};
 pub use crate::mission::{Mission, MissionArgs};
+pub use crate::saves::{Save, SaveError};
 pub use air::{AirFaults, Forger, Forgery, MediumKind, Partition, Reach};
 pub use arguments::{ConditionsArgs, LinkArgs, parse_share};
 pub use error::ScenarioError;

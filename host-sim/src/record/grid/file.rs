@@ -11,7 +11,7 @@ use super::{Grid, Trace};
 use crate::planners::PlannerKind;
 use crate::record::{self, TraceError};
 use crate::scenario::grid::Scenario;
-use crate::scenario::{Conditions, Motion};
+use crate::scenario::{Conditions, Motion, Save};
 use crate::sensor::ALL_AROUND;
 use crate::world::World;
 
@@ -29,6 +29,9 @@ struct Header {
     /// Absent where robots make a step a tick.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     motion: Option<Motion>,
+    /// Absent where robots start without a map.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    restored: Option<Save>,
     starts: Vec<(i16, i16)>,
     #[serde(flatten)]
     conditions: Conditions,
@@ -86,6 +89,7 @@ impl Header {
             solid: scenario.solid,
             clearance: scenario.clearance,
             motion: scenario.motion,
+            restored: scenario.restored.as_deref().cloned(),
             starts: scenario
                 .starts
                 .iter()
@@ -110,6 +114,7 @@ impl Header {
             solid: self.solid,
             clearance: self.clearance,
             motion: self.motion,
+            restored: self.restored.map(Arc::new),
             conditions: self.conditions,
         };
         scenario.check()?;

@@ -185,6 +185,8 @@ fn a_complete_run_leaves_its_files_and_exits_with_0() {
         "coverage.png",
         "explored.gif",
         "explored.png",
+        "map.pgm",
+        "map.yaml",
         "summary.json",
         "trace.csv",
     ];
@@ -651,6 +653,41 @@ fn logs_of_scans_are_scored_and_drawn() {
         &["corridor.log", "corridor.log", "--cell-size=0.1"],
         &["two logs are called corridor"],
     );
+}
+
+#[test]
+fn what_robots_know_is_a_map_that_can_be_explored() {
+    let folder = folder();
+    // A chamber that nobody can see into, and a niche that robots keep out of.
+    let map = "#########\n#.....#.#\n#.....#.#\n#.......#\n###.#####\n#.#.#...#\n#########\n";
+    fs::write(folder.path().join("flat.txt"), map).unwrap();
+    let run = |arguments: &[&str]| -> Value {
+        let output = host_sim(folder.path(), arguments).assert().success();
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let first = run(&[
+        "explore",
+        "flat.txt",
+        "--robots=1",
+        "--keep-out=3,5",
+        "--json",
+    ]);
+    assert_eq!(first["unreachable_cells"], 5);
+    let yaml = "out/flat/map.yaml";
+    let again = ["explore", yaml, "--robots=1", "--out=again", "--json"];
+    let second = run(&again);
+    assert_eq!(second["reachable_cells"], first["reachable_cells"]);
+    assert_eq!(second["complete"], true);
+    assert_eq!(second["unreachable_cells"], 0);
+    let read = |path: &str| fs::read(folder.path().join(path)).unwrap();
+    let (picture, of_second) = (read("out/flat/map.pgm"), read("again/map.pgm"));
+    let count = |gray| picture.iter().filter(|&&byte| byte == gray).count() as u64;
+    assert_eq!(Some(count(254)), first["reachable_cells"].as_u64());
+    assert!(count(205) >= 5);
+    let free = |picture: &[u8]| -> Vec<bool> { picture.iter().map(|&of| of == 254).collect() };
+    assert_eq!(free(&picture), free(&of_second));
+    let yaml = String::from_utf8(read(yaml)).unwrap();
+    assert!(yaml.contains("image: map.pgm\n") && yaml.contains("resolution: 0.25\n"));
 }
 
 #[test]

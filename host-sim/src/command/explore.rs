@@ -21,7 +21,7 @@ use host_sim::scenario::grid::Scenario;
 use host_sim::scenario::{ConditionsArgs, MediumKind, MotionArgs, Save, ScenarioError};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
-use host_sim::world::{ReadOptions, Scale, Starts, World};
+use host_sim::world::{KnownMap, ReadOptions, Scale, Starts, World};
 use planner_core::Cell;
 
 use super::output::OutputArgs;
@@ -95,6 +95,13 @@ pub(crate) struct Explore {
     conditions: ConditionsArgs,
 }
 
+/// Side of a cell: as the map or --cell says, else as wide as recordings take it.
+fn metres_per_cell(scenario: &Scenario) -> f64 {
+    let of_map = scenario.world.metres_per_cell();
+    let of_motion = scenario.motion.map(|motion| motion.cell);
+    { of_map.or(of_motion) }.unwrap_or(Laser::default().cell_size)
+}
+
 /// One value of `--start`.
 #[derive(Clone, Copy)]
 enum Start {
@@ -156,8 +163,8 @@ impl Explore {
             bar.set_position(progress.seen_cells.into());
             bar.set_message(format!("tick {}", progress.ticks));
         };
-        let mut save = None;
-        let mut ended = |run: &dyn Stepping| save = run.save();
+        let mut over = None;
+        let mut ended = |run: &dyn Stepping| over = Some((run.save(), run.known()));
         let options = Options {
             trace: true,
             progress: Some(&mut advance),
@@ -167,6 +174,7 @@ impl Explore {
         };
         let (outcome, trace, measured) = run(&scenario, options)?;
         let trace = trace.expect("a trace was asked for");
+        let (save, known) = over.expect("the run is over");
         bar.finish_and_clear();
 
         let mut summary = Summary::new(&scenario, &outcome, trace.digest());
@@ -176,6 +184,11 @@ impl Explore {
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
         folder.write("explored.png", |file| draw::picture(&trace, file))?;
         folder.write("explored.gif", |file| draw::animation(&trace, file))?;
+        folder.write("map.pgm", |file| Ok(file.write_all(&known.pgm())?))?;
+        folder.put(
+            "map.yaml",
+            &KnownMap::yaml("map.pgm", metres_per_cell(&scenario)),
+        )?;
         folder.write_coverage(&Coverage::from(&trace))?;
         let path = folder.path().to_path_buf();
         if let Some(scans) = &self.scans {

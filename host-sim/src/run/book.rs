@@ -193,9 +193,20 @@ impl Book {
 
 /// Robot by robot, the cells that it lacks and another one alive knows.
 fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> {
-    let alive = || fleet.robots().iter().filter(|robot| robot.alive);
+    let known = joined(fleet).map_or(0, |all| all.known_cells());
+    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
+    let robots = fleet.robots().iter();
+    robots
+        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
+        .collect()
+}
+
+/// What all living robots know together; `None`: none lives.
+pub(super) fn joined<const TW: usize, const TH: usize>(
+    fleet: &Fleet<TW, TH>,
+) -> Option<Box<Map<TW, TH>>> {
     let mut all: Option<Box<Map<TW, TH>>> = None;
-    for robot in alive() {
+    for robot in fleet.robots().iter().filter(|robot| robot.alive) {
         match &mut all {
             None => all = Some(Box::new(robot.planner.map().clone())),
             Some(all) => {
@@ -203,10 +214,5 @@ fn unheard<const TW: usize, const TH: usize>(fleet: &Fleet<TW, TH>) -> Vec<u32> 
             }
         }
     }
-    let known = all.map_or(0, |all| all.known_cells());
-    let lacks = |robot: &Robot<TW, TH>| known - robot.planner.map().known_cells();
-    let robots = fleet.robots().iter();
-    robots
-        .map(|robot| if robot.alive { lacks(robot) } else { 0 })
-        .collect()
+    all
 }

@@ -6,7 +6,7 @@ use planner_core::map::Tile;
 use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, RobotId, Wait};
 
-use super::book::Book;
+use super::book::{Book, joined};
 use super::grid::fleet_on;
 use super::{Host, Outcome, Progress};
 use crate::fleet::Fleet;
@@ -16,6 +16,7 @@ use crate::robot::{Robot, Step};
 use crate::saves::Save;
 use crate::scenario::grid::Scenario;
 use crate::sensor::Sensor;
+use crate::world::KnownMap;
 
 /// A run between two ticks, on maps of `TW`×`TH` tiles.
 pub struct Running<const TW: usize, const TH: usize> {
@@ -136,6 +137,8 @@ pub trait Stepping {
     fn messages(&self) -> &[Message];
     /// What happened up to now.
     fn outcome(&self) -> Outcome;
+    /// What the living robots know together, except of cells that they keep out of.
+    fn known(&self) -> KnownMap;
     /// What the planners know, to go on from; `None` where they cannot be saved.
     fn save(&self) -> Option<Save>;
 }
@@ -214,6 +217,15 @@ impl<const TW: usize, const TH: usize> Stepping for Running<TW, TH> {
 
     fn outcome(&self) -> Outcome {
         self.book.outcome(&self.scenario, &self.fleet)
+    }
+
+    fn known(&self) -> KnownMap {
+        let all = joined(&self.fleet);
+        KnownMap::from_fn(self.scenario.world.extent(), |cell| {
+            let (at, bit) = TileIndex::of(cell)?;
+            let tile = all.as_ref()?.tile_inside(at);
+            (tile.known() & bit != 0).then(|| tile.free() & bit != 0)
+        })
     }
 
     fn save(&self) -> Option<Save> {

@@ -212,11 +212,16 @@ pub(super) fn png(world: &World, side: u32) -> Result<Vec<u8>, Problem> {
 
 /// The world as a binary PGM image, as [`draw`] draws it.
 pub(super) fn pgm(world: &World, side: u32) -> Result<Vec<u8>, Problem> {
+    Ok(pgm_of(&draw(world, side)?))
+}
+
+/// A picture as binary PGM.
+pub(super) fn pgm_of(image: &GrayImage) -> Vec<u8> {
     let subtype = PnmSubtype::Graymap(SampleEncoding::Binary);
     let mut bytes = Vec::new();
     let encoder = PnmEncoder::new(&mut bytes).with_subtype(subtype);
-    write(&draw(world, side)?, encoder);
-    Ok(bytes)
+    write(image, encoder);
+    bytes
 }
 
 /// A square of `side` pixels for each cell: free cells white, obstacles black.

@@ -9,6 +9,9 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use clap::Args;
 use planner_core::{Cell, CellSet, Extent};
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::world::World;
 
 /// Cells in a rectangle or a polygon.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -66,6 +69,38 @@ impl Area {
             }
         }
         is_inside
+    }
+
+    /// Rectangles that hold the cells of a grid that `holds` names, and no others.
+    pub fn covering(extent: Extent, holds: impl Fn(Cell) -> bool) -> Vec<Self> {
+        let (width, height) = (extent.width as i16, extent.height as i16);
+        let mut areas: Vec<Self> = Vec::new();
+        // Rectangles that reach down to the row above, by their first and last columns.
+        let mut open: HashMap<(i16, i16), usize> = HashMap::new();
+        for y in 0..height {
+            let mut next = HashMap::new();
+            let mut x = 0;
+            while x < width {
+                let first = x;
+                while x < width && holds(Cell::new(x, y)) {
+                    x += 1;
+                }
+                if x > first {
+                    let last = Cell::new(x - 1, y);
+                    let columns = (first, last.x);
+                    let area = open.remove(&columns).unwrap_or_else(|| {
+                        let corners = vec![Cell::new(first, y), last];
+                        areas.push(Self { corners });
+                        areas.len() - 1
+                    });
+                    areas[area].corners[1] = last;
+                    next.insert(columns, area);
+                }
+                x += 1;
+            }
+            open = next;
+        }
+        areas
     }
 
     /// Its corners.
@@ -168,20 +203,90 @@ impl From<Area> for String {
 #[derive(Args, Clone)]
 pub struct LimitsArgs {
     /// X,Y:X,Y: robots neither enter nor touch these cells, and need not see them: a
-    /// rectangle, or a polygon of three corners and more. May be given again. The explorer's
-    /// alone.
-    #[arg(long, value_name = "X,Y:X,Y")]
-    keep_out: Vec<Area>,
-    /// X,Y:X,Y: robots stay within this area, or with several within all of them. The
-    /// explorer's alone.
-    #[arg(long, value_name = "X,Y:X,Y")]
-    only: Vec<Area>,
+    /// rectangle, or a polygon of three corners and more. With an m behind it, for example
+    /// 0.5,1:2,3.5m, in metres of the map's frame (y up; from the origin of a .yaml): each
+    /// corner is the cell that it lies in. May be given again. The explorer's alone.
+    #[arg(long, value_name = "X,Y:X,Y[m]", allow_hyphen_values = true)]
+    keep_out: Vec<Given>,
+    /// X,Y:X,Y: robots stay within this area, or with several within any of them; also in
+    /// metres. The explorer's alone.
+    #[arg(long, value_name = "X,Y:X,Y[m]", allow_hyphen_values = true)]
+    only: Vec<Given>,
+}
+
+/// An area as it is given.
+#[derive(Clone)]
+enum Given {
+    Cells(Area),
+    /// Corners in the map's frame.
+    Metres(Vec<(f64, f64)>),
+}
+
+/// An area in metres on a map of cells of unknown width; the option that names it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "--{0}: an area in metres needs a map that says how wide its cells are (.yaml); give corners \
+     in cells, without the m"
+)]
+pub struct NoMetres(pub &'static str);
+
+impl FromStr for Given {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let Some(metres) = text.trim_end().strip_suffix('m') else {
+            return text.parse().map(Self::Cells);
+        };
+        let corner = |text: &str| {
+            let (x, y) = text.split_once(',')?;
+            let metres = |text: &str| text.trim().parse().ok().filter(|of: &f64| of.is_finite());
+            Some((metres(x)?, metres(y)?))
+        };
+        let corners = metres.split(':').map(corner).collect::<Option<_>>();
+        corners.map(Self::Metres).ok_or_else(|| {
+            "expected X,Y:X,Y and m, in metres, for example 0.5,1:2,3.5m: the rectangle between \
+             two corners; three corners and more: a polygon"
+                .into()
+        })
+    }
 }
 
 impl LimitsArgs {
-    pub(crate) fn over(self, limits: &mut Limits) {
-        limits.keep_out.extend(self.keep_out);
-        limits.only.extend(self.only);
+    /// The option that names cells, if one is given.
+    pub(crate) fn option(&self) -> Option<&'static str> {
+        let keep_out = (!self.keep_out.is_empty()).then_some("keep-out");
+        keep_out.or((!self.only.is_empty()).then_some("only"))
+    }
+
+    /// Finds the cells of areas in metres.
+    pub(crate) fn lay(&mut self, world: &World) -> Result<(), NoMetres> {
+        for (option, areas) in [("keep-out", &mut self.keep_out), ("only", &mut self.only)] {
+            for area in areas {
+                if let Given::Metres(corners) = area {
+                    let cells = corners.iter().map(|&(x, y)| world.cell_at(x, y));
+                    let corners = cells.collect::<Option<_>>();
+                    let corners = corners.ok_or(NoMetres(option))?;
+                    *area = Given::Cells(Area { corners });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn over(self, limits: &mut Limits) -> Result<(), NoMetres> {
+        let all = [
+            ("keep-out", self.keep_out, &mut limits.keep_out),
+            ("only", self.only, &mut limits.only),
+        ];
+        for (option, given, areas) in all {
+            for area in given {
+                match area {
+                    Given::Cells(area) => areas.push(area),
+                    Given::Metres(_) => return Err(NoMetres(option)),
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -227,7 +332,75 @@ mod tests {
         assert_eq!(rows, expected);
     }
 
+    #[test]
+    fn corners_in_metres_are_the_cells_that_they_lie_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.yaml");
+        std::fs::write(
+            folder.path().join("map.pgm"),
+            "P2 6 4 255\n".to_owned() + &"255 ".repeat(24),
+        )
+        .unwrap();
+        let read = |origin: &str, scale| {
+            let yaml = format!(
+                "image: map.pgm\nresolution: 0.5\norigin: {origin}\nnegate: 0\n\
+                 occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+            );
+            std::fs::write(&path, yaml).unwrap();
+            World::read(
+                &path,
+                &crate::world::ReadOptions {
+                    scale,
+                    ..Default::default()
+                },
+            )
+            .unwrap()
+        };
+        use crate::world::Scale;
+        let laid = |world: &World, text: &str| {
+            let mut args = LimitsArgs {
+                keep_out: vec![text.parse().unwrap()],
+                only: Vec::new(),
+            };
+            let mut limits = Limits::default();
+            args.lay(world)?;
+            args.over(&mut limits)?;
+            Ok::<_, NoMetres>(limits.keep_out[0].to_string())
+        };
+        let world = read("[-1, 2, 0]", Scale::Pixel);
+        assert_eq!(laid(&world, "-0.9,2.1:0.2,2.6m").unwrap(), "0,3:2,2");
+        // Two cells of 3 × 3 pixels on a side; the lower ones lack two rows.
+        let world = read("[-1, 2, 0]", Scale::Pixels(3));
+        assert_eq!(laid(&world, "-0.9,2.1:0.6,3.9m").unwrap(), "0,1:1,0");
+        // A quarter turn counter-clockwise: x goes up, y to the left.
+        let world = read("[0, 0, 1.5707963267948966]", Scale::Pixel);
+        assert_eq!(laid(&world, "-0.1,0.1:-0.6,0.6m").unwrap(), "0,3:1,2");
+        let unknown = World::from_fn("room", Extent::new(3, 3), |_| false).unwrap();
+        let error = laid(&unknown, "0,0:1,1m").unwrap_err().to_string();
+        assert!(
+            error.contains("--keep-out") && error.contains("in cells"),
+            "{error}"
+        );
+        for text in ["m", "1m", "1,2:3m", "a,bm", "1,infm"] {
+            let error = text.parse::<Given>().map(|_| ()).unwrap_err();
+            assert!(error.contains("in metres"), "{text}: {error}");
+        }
+    }
+
     proptest! {
+        #[test]
+        fn what_covers_cells_holds_them_and_no_others(
+            cells in proptest::collection::vec(any::<bool>(), 7 * 5),
+        ) {
+            let holds = |cell: Cell| cells[cell.y as usize * 7 + cell.x as usize];
+            let extent = Extent::new(7, 5);
+            let areas = Area::covering(extent, holds);
+            for cell in crate::world::cells(extent) {
+                let covering = areas.iter().filter(|area| area.contains(cell)).count();
+                prop_assert_eq!(covering, usize::from(holds(cell)), "{}", cell);
+            }
+        }
+
         #[test]
         fn a_polygon_of_four_corners_of_a_rectangle_is_that_rectangle(
             [ax, bx] in [0i16..20, 0..20], [ay, by] in [0i16..20, 0..20],

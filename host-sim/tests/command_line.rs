@@ -727,3 +727,59 @@ fn explorations_are_saved_and_restored() {
     fs::write(folder.path().join("fleet"), damaged).unwrap();
     bad(&["--restore=fleet"], &["fleet: is damaged"]);
 }
+
+#[test]
+fn robots_keep_out_of_masks_and_of_areas_in_metres() {
+    let folder = folder();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let yaml = |image: &str| {
+        format!(
+            "image: {image}\nresolution: 0.5\norigin: [-1, -2, 0]\nnegate: 0\n\
+             occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+        )
+    };
+    // A hall of 6 × 4 cells; the mask closes the three cells in the south-east corner.
+    write("hall.pgm", &format!("P2 6 4 255\n{}", "255 ".repeat(24)));
+    write("hall.yaml", &yaml("hall.pgm"));
+    let mask = "255 ".repeat(17) + "0 255 255 255 255 0 0";
+    write("mask.pgm", &format!("P2 6 4 255\n{mask}"));
+    write("mask.yaml", &yaml("mask.pgm"));
+    let run = |arguments: &[&str]| -> Value {
+        let usual = [
+            "explore",
+            "hall.yaml",
+            "--robots=1",
+            "--start=0,0",
+            "--json",
+        ];
+        let arguments = [&usual, arguments].concat();
+        let output = host_sim(folder.path(), &arguments).assert().success();
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let masked = run(&["--keep-out-mask=mask.yaml"]);
+    assert_eq!(masked["reachable_cells"], 24 - 3);
+    // The same corner in metres, a cell more: 1 m by 1 m.
+    let metres = run(&["--keep-out=1.1,-1.9:1.9,-1.1m"]);
+    assert_eq!(metres["reachable_cells"], 24 - 4);
+    assert_eq!(run(&["--only=-0.9,-1.9:0.4,-0.1m"])["reachable_cells"], 12);
+    let map = fs::read_to_string(folder.path().join("out/hall/map.yaml")).unwrap();
+    assert!(map.contains("origin: [-1.0, -2.0, 0.0]"), "{map}");
+
+    let bad = |arguments: &[&str], words: &[&str]| {
+        let other = self::folder();
+        fs::copy(
+            folder.path().join("mask.pgm"),
+            other.path().join("mask.pgm"),
+        )
+        .unwrap();
+        let arguments = [&["explore", "rooms.txt"], arguments].concat();
+        assert_bad_input(other.path(), &arguments, words);
+    };
+    bad(
+        &["--keep-out=1,1:2,2m"],
+        &["--keep-out", "in metres", ".yaml"],
+    );
+    bad(&["--keep-out=1,1:2m"], &["expected X,Y:X,Y and m"]);
+    bad(&["--keep-out-mask=mask.pgm"], &["mask.pgm", "6×4", "12×5"]);
+    bad(&["--keep-out-mask=none.pgm"], &["none.pgm", "no such file"]);
+}

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::Read;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use host_sim::record::grid::Trace;
 use host_sim::run::{self, Options, Outcome, Progress, Stepping};
 use host_sim::scans::Laser;
 use host_sim::scenario::grid::Scenario;
-use host_sim::scenario::{ConditionsArgs, MediumKind, MotionArgs, Save, ScenarioError};
+use host_sim::scenario::{Area, ConditionsArgs, MediumKind, MotionArgs, Save, ScenarioError};
 use host_sim::sensor::ALL_AROUND;
 use host_sim::summary::Summary;
 use host_sim::world::{KnownMap, ReadOptions, Scale, Starts, World};
@@ -87,6 +87,10 @@ pub(crate) struct Explore {
     /// were.
     #[arg(long, value_name = "FILE", conflicts_with = "start")]
     restore: Option<PathBuf>,
+    /// An image or the YAML file of one, as a map of the same size: robots keep out of what is
+    /// black or unknown there (nav2's keepout filter takes such masks).
+    #[arg(long, value_name = "FILE")]
+    keep_out_mask: Option<PathBuf>,
     #[command(flatten)]
     motion: MotionArgs,
     #[command(flatten)]
@@ -187,7 +191,11 @@ impl Explore {
         folder.write("map.pgm", |file| Ok(file.write_all(&known.pgm())?))?;
         folder.put(
             "map.yaml",
-            &KnownMap::yaml("map.pgm", metres_per_cell(&scenario)),
+            &KnownMap::yaml(
+                "map.pgm",
+                metres_per_cell(&scenario),
+                scenario.world.origin(),
+            ),
         )?;
         folder.write_coverage(&Coverage::from(&trace))?;
         let path = folder.path().to_path_buf();
@@ -241,7 +249,8 @@ impl Explore {
     /// The option that names cells to keep out of, if one is given.
     #[cfg(unix)]
     pub(super) fn limit(&self) -> Option<&'static str> {
-        self.conditions.limit()
+        let mask = self.keep_out_mask.is_some().then_some("keep-out-mask");
+        self.conditions.limit().or(mask)
     }
 
     fn read_options(&self) -> ReadOptions {
@@ -281,9 +290,29 @@ impl Explore {
         }
         scenario.conditions.medium = MediumKind::Radio;
         scenario.conditions.seed = SEED;
-        self.conditions.clone().set(&mut scenario.conditions)?;
+        let mut conditions = self.conditions.clone();
+        conditions.lay(&scenario.world)?;
+        conditions.set(&mut scenario.conditions)?;
+        if let Some(path) = &self.keep_out_mask {
+            let mask = self.mask(path, &scenario.world)?;
+            scenario.conditions.limits.keep_out.extend(mask);
+        }
         scenario.check()?;
         Ok(scenario)
+    }
+
+    /// What a mask says to keep out of.
+    fn mask(&self, path: &Path, world: &World) -> Result<Vec<Area>, Box<dyn Error>> {
+        let mask = World::read(path, &self.read_options())?;
+        let (extent, found) = (world.extent(), mask.extent());
+        if extent != found {
+            return Err(format!(
+                "--keep-out-mask {}: has {found} cells, and the map {extent}; make it as large",
+                path.display()
+            )
+            .into());
+        }
+        Ok(Area::covering(extent, |cell| !mask.is_free(cell)))
     }
 
     /// The save to go on from, if one is named and fits.

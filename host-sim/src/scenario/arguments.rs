@@ -5,9 +5,10 @@ use clap::{Args, Command, FromArgMatches};
 use planner_core::radio::{Key, LinkConfig};
 
 use super::{
-    AirFaults, CellSpan, Conditions, Event, Faults, Forger, Limits, LimitsArgs, MediumKind,
-    MissionArgs, Partition, Preset, Reach, RobotSpan, ScenarioError, TroubleArgs, key,
+    AirFaults, CellSpan, Conditions, Event, Faults, Forger, LimitsArgs, MediumKind, MissionArgs,
+    Partition, Preset, Reach, RobotSpan, ScenarioError, TroubleArgs, key,
 };
+use crate::world::World;
 
 /// The options of a robot's radio.
 #[derive(Args, Clone)]
@@ -134,9 +135,15 @@ impl ConditionsArgs {
 
     /// The option that names cells to keep out of, if one is given.
     pub fn limit(&self) -> Option<&'static str> {
-        let mut limits = Limits::default();
-        self.limits.clone().over(&mut limits);
-        limits.areas().next().map(|(option, _)| option)
+        self.limits.option()
+    }
+
+    /// Finds the cells of areas in metres.
+    ///
+    /// # Errors
+    /// The map does not say how wide its cells are.
+    pub fn lay(&mut self, world: &World) -> Result<(), ScenarioError> {
+        Ok(self.limits.lay(world)?)
     }
 
     /// Whether frames are to be signed.
@@ -147,7 +154,8 @@ impl ConditionsArgs {
     /// Sets what is given.
     ///
     /// # Errors
-    /// A budget of bytes for a medium that has none.
+    /// A budget of bytes for a medium that has none; areas in metres that are not
+    /// [laid](Self::lay).
     pub fn set(self, conditions: &mut Conditions) -> Result<(), ScenarioError> {
         let Conditions {
             medium,
@@ -208,7 +216,7 @@ impl ConditionsArgs {
         *trouble = self.trouble.over(*trouble);
         replace(preset, self.preset);
         *mission = self.mission.over(*mission);
-        self.limits.over(limits);
+        self.limits.over(limits)?;
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
             _ => Ok(()),

@@ -6,6 +6,7 @@ use planner_core::{Cell, Extent, ExtentError};
 use thiserror::Error;
 
 use super::Preset;
+use crate::limits::NoMetres;
 use crate::planners::PlannerKind;
 use crate::saves::SaveError;
 use crate::sensor::ALL_AROUND;
@@ -66,6 +67,8 @@ pub enum ScenarioError {
          them there; start it elsewhere (--start X,Y)"
     )]
     StartKeptOut { robot: usize, start: Cell },
+    #[error("{0}")]
+    NoMetres(#[from] NoMetres),
     #[error("--{option}: planner {planner} cannot be saved; the explorer can")]
     NeverSaved {
         option: &'static str,

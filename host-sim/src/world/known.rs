@@ -44,10 +44,10 @@ impl KnownMap {
     }
 
     /// What map_server has to know of that picture, in the file `image` beside it: cells of so
-    /// many metres, counted from the lower left corner.
-    pub fn yaml(image: &str, cell: f64) -> String {
+    /// many metres, and the pose of the lower left corner.
+    pub fn yaml(image: &str, cell: f64, origin: [f64; 3]) -> String {
         format!(
-            "image: {image}\nmode: trinary\nresolution: {cell}\norigin: [0.0, 0.0, 0.0]\n\
+            "image: {image}\nmode: trinary\nresolution: {cell}\norigin: {origin:?}\n\
              negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
         )
     }

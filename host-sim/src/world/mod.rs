@@ -41,6 +41,8 @@ pub struct World {
     grid: Grid,
     starts: Vec<Cell>,
     metres_per_cell: Option<f64>,
+    /// Pose of the lower left corner: metres and radians.
+    origin: [f64; 3],
     notes: Vec<String>,
 }
 
@@ -75,6 +77,7 @@ impl World {
             grid,
             starts: Vec::new(),
             metres_per_cell: None,
+            origin: [0.0; 3],
             notes: Vec::new(),
         })
     }
@@ -117,6 +120,26 @@ impl World {
     /// Side of a cell in metres, if the map says so.
     pub fn metres_per_cell(&self) -> Option<f64> {
         self.metres_per_cell
+    }
+
+    /// The pose of its lower left corner in its own frame: x, y and yaw in metres and radians,
+    /// x to the right, y up, angles counter-clockwise. All 0 unless the map says so.
+    pub fn origin(&self) -> [f64; 3] {
+        self.origin
+    }
+
+    /// The cell at a place in that frame, on the map or not; on a border, the one to the
+    /// right, or above. `None`: the map does not say how wide its cells are.
+    pub fn cell_at(&self, x: f64, y: f64) -> Option<Cell> {
+        let side = self.metres_per_cell?;
+        let [left, low, yaw] = self.origin;
+        let (sin, cos) = libm::sincos(-yaw);
+        let (dx, dy) = (x - left, y - low);
+        let column = libm::floor((dx * cos - dy * sin) / side);
+        let row = libm::floor((dx * sin + dy * cos) / side);
+        let whole = |number: f64| number.is_finite().then_some(number as i16);
+        let top = self.extent().height as i16 - 1;
+        Some(Cell::new(whole(column)?, top.saturating_sub(whole(row)?)))
     }
 
     /// What the user should be told about how the file was read, for example

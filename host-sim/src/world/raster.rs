@@ -109,6 +109,8 @@ impl Tally {
 pub(super) struct Cut {
     pub(super) grid: Grid,
     pub(super) tally: Tally,
+    /// Rows of pixels that the lowest cells lack.
+    pub(super) lacking: u32,
 }
 
 /// Decodes PNG or PGM, told apart by their first bytes, and cuts the picture into cells
@@ -187,7 +189,12 @@ pub(super) fn cut(
         .into_iter()
         .map(|(blocked, free)| blocked || 2 * free <= whole);
     let grid = Grid::from_fn(extent, |_| cells.next() != Some(false));
-    Ok(Cut { grid, tally })
+    let lacking = height.next_multiple_of(side) - height;
+    Ok(Cut {
+        grid,
+        tally,
+        lacking,
+    })
 }
 
 impl Cut {

@@ -1,8 +1,8 @@
 //! ROS map_server maps: a YAML file that describes an image.
 //!
 //! <https://wiki.ros.org/map_server>, "Map format", and nav2_map_server, which reads the
-//! same. Modes `trinary`, `scale` and `raw`; the pose of the map in the world (`origin`)
-//! is checked and otherwise of no use here.
+//! same. Modes `trinary`, `scale` and `raw`; the pose of the map in the world (`origin`) is
+//! what places in metres count from.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -194,6 +194,7 @@ enum Mode {
 struct Description {
     image: String,
     resolution: f64,
+    origin: [f64; 3],
     occupied_thresh: f64,
     free_thresh: f64,
     negate: bool,
@@ -220,9 +221,13 @@ pub(super) fn read(
     };
     let (bytes, moved) = open_image(path, &description.image, open).map_err(in_image)?;
     let cut = raster::cut(&bytes, pixels, |pixel| description.ground(pixel)).map_err(in_image)?;
-    let tally = cut.tally;
+    let (tally, lacking) = (cut.tally, cut.lacking);
     let mut world = cut.world(name, BETWEEN)?;
     world.metres_per_cell = Some(f64::from(pixels) * description.resolution);
+    let [x, y, yaw] = description.origin;
+    let below = f64::from(lacking) * description.resolution;
+    let (sin, cos) = libm::sincos(yaw);
+    world.origin = [x + below * sin, y - below * cos, yaw];
     world.notes.extend(description.notes);
     world.notes.extend(moved);
     world.notes.extend(note);
@@ -291,7 +296,7 @@ impl Description {
             _ => None,
         };
         let pose = pose
-            .filter(|pose| pose.len() == 3)
+            .and_then(|pose| <[f64; 3]>::try_from(pose).ok())
             .ok_or_else(|| wrong("origin", ORIGIN, &origin))?;
         if pose.iter().any(|number| !number.is_finite()) {
             notes.push(format!(
@@ -333,6 +338,7 @@ impl Description {
         Ok(Self {
             image,
             resolution,
+            origin: pose,
             occupied_thresh,
             free_thresh,
             negate,

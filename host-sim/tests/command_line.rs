@@ -783,3 +783,18 @@ fn robots_keep_out_of_masks_and_of_areas_in_metres() {
     bad(&["--keep-out-mask=mask.pgm"], &["mask.pgm", "6×4", "12×5"]);
     bad(&["--keep-out-mask=none.pgm"], &["none.pgm", "no such file"]);
 }
+
+#[cfg(feature = "mcap")]
+#[test]
+fn a_recording_of_a_run_is_a_log_of_scans() {
+    let folder = folder();
+    let explore = ["explore", "rooms.txt", "--robots=2", "--mcap=rooms.mcap"];
+    host_sim(folder.path(), &explore).assert().success();
+    let replay = ["replay-scans", "rooms.mcap", "--cell-size=0.25", "--json"];
+    let arguments = [&replay[..], &["--preset=truthful"]].concat();
+    let output = host_sim(folder.path(), &arguments).assert().success();
+    let score: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    assert_eq!(score["log"], "rooms");
+    assert!(score["looks"].as_u64() > Some(9) && score["driven"].as_u64() > Some(5));
+    assert_eq!(score["driven_closed"], 0);
+}

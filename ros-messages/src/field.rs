@@ -1,6 +1,7 @@
 //! What a field of a message is called in ROS, and the definition of a whole message.
 
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// The type of a field.
 pub trait Field {
@@ -43,6 +44,24 @@ pub trait Message: Field + Serialize {
         let mut bytes = vec![0, 1, 0, 0];
         bytes.extend(cdr_encoding::to_vec::<_, byteorder::LittleEndian>(self)?);
         Ok(bytes)
+    }
+
+    /// A message out of its bytes, of either byte order.
+    ///
+    /// # Errors
+    /// Bytes that end too early, or text that is none.
+    fn from_bytes(bytes: &[u8]) -> Result<Self, cdr_encoding::Error>
+    where
+        Self: DeserializeOwned,
+    {
+        match bytes {
+            [_, order, _, _, body @ ..] if order & 1 == 0 => {
+                cdr_encoding::from_bytes::<_, byteorder::BigEndian>(body)
+            }
+            [_, _, _, _, body @ ..] => cdr_encoding::from_bytes::<_, byteorder::LittleEndian>(body),
+            _ => cdr_encoding::from_bytes::<_, byteorder::LittleEndian>(&[]),
+        }
+        .map(|(message, _)| message)
     }
 }
 
@@ -196,6 +215,20 @@ mod tests {
             0, 0, 0, 0,
         ];
         assert_eq!(scan.to_bytes().unwrap(), expected);
+        assert_eq!(LaserScan::from_bytes(&expected).unwrap(), scan);
+        for end in 0..expected.len() {
+            assert!(LaserScan::from_bytes(&expected[..end]).is_err(), "{end}");
+        }
+    }
+
+    #[test]
+    fn the_header_tells_the_order_of_bytes() {
+        let big = [0, 0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 3];
+        let time = Time {
+            sec: 0x0102,
+            nanosec: 3,
+        };
+        assert_eq!(Time::from_bytes(&big).unwrap(), time);
     }
 
     #[test]

@@ -14,4 +14,4 @@ pub mod tf;
 pub mod visualization;
 
 pub use field::{Field, Message};
-pub use recording::{Recording, RecordingError};
+pub use recording::{Recorded, Recording, RecordingError, recorded};

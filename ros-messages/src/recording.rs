@@ -3,20 +3,55 @@
 use std::collections::BTreeMap;
 use std::io::{Seek, Write};
 
+use mcap::read::Options;
 use mcap::records::MessageHeader;
-use mcap::{WriteOptions, Writer};
+use mcap::{MessageStream, WriteOptions, Writer};
 
 use crate::Message;
 
-/// Why something was not recorded.
+/// Why something was not recorded, or is not read.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// The file cannot be written.
     #[error("the recording cannot be written: {0}")]
     File(#[from] mcap::McapError),
     /// The message has no bytes.
-    #[error("a message cannot be recorded: {0}")]
+    #[error("a message cannot be encoded or decoded: {0}")]
     Bytes(#[from] cdr_encoding::Error),
+    /// The recording is damaged or compressed.
+    #[error("{0}")]
+    Unread(mcap::McapError),
+}
+
+/// A message of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// Its topic.
+    pub topic: String,
+    /// Its type, such as `sensor_msgs/msg/LaserScan`.
+    pub kind: String,
+    /// As [`Message::from_bytes`] takes it.
+    pub bytes: Vec<u8>,
+}
+
+/// The messages of a recording, in their order. One without an end is read as far as it goes.
+///
+/// # Errors
+/// What is no recording; message by message, what is damaged or compressed.
+pub fn recorded(
+    bytes: &[u8],
+) -> Result<impl Iterator<Item = Result<Recorded, RecordingError>>, RecordingError> {
+    let options = Options::IgnoreEndMagic.into();
+    let messages = MessageStream::new_with_options(bytes, options);
+    Ok(messages.map_err(RecordingError::Unread)?.map(|message| {
+        let message = message.map_err(RecordingError::Unread)?;
+        let kind = message.channel.schema.as_ref();
+        Ok(Recorded {
+            topic: message.channel.topic.clone(),
+            kind: kind.map_or(String::new(), |schema| schema.name.clone()),
+            bytes: message.data.into_owned(),
+        })
+    }))
 }
 
 /// A recording that grows message by message. Without [`finish`](Self::finish) it has no
@@ -115,6 +150,13 @@ mod tests {
             ("std_msgs/msg/Bool", "ros2msg")
         );
         assert_eq!(schema.data[..], *b"bool data\n");
+        let read: Vec<_> = recorded(&bytes).unwrap().map(Result::unwrap).collect();
+        assert_eq!(Bool::from_bytes(&read[0].bytes).unwrap(), yes);
+        assert_eq!(
+            (&*read[1].topic, &*read[1].kind),
+            ("/cmd_vel", "geometry_msgs/msg/Twist")
+        );
+        assert!(recorded(b"no recording").is_err());
         let sequences: Vec<_> = messages.iter().map(|it| it.sequence).collect();
         assert_eq!(sequences, [1, 1, 2]);
     }

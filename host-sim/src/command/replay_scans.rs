@@ -16,7 +16,8 @@ use super::folder::Folder;
 #[derive(Args)]
 pub(crate) struct ReplayScans {
     /// Logs: a look a line, `x y heading bearing range bearing range …` in metres and
-    /// radians (y up, angles counter-clockwise), or CARMEN with FLASER or ROBOTLASER lines.
+    /// radians (y up, angles counter-clockwise), CARMEN with FLASER or ROBOTLASER lines, or a
+    /// ROS 2 recording (MCAP) with LaserScan and TF or Odometry (`--features mcap`).
     #[arg(required = true, value_name = "FILE")]
     logs: Vec<PathBuf>,
     /// Side of a cell in metres.

@@ -6,6 +6,8 @@
 //! The simulator's looks say what its world is. A log's looks say what a real robot saw:
 //! with noise, with poses that are a little off, past people.
 
+#[cfg(all(feature = "mcap", not(target_arch = "wasm32")))]
+mod bag;
 mod frame;
 mod laser;
 mod line;

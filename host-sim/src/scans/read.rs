@@ -14,8 +14,10 @@ use crate::excerpt::{excerpt, printable};
 const MOST_BYTES: u64 = 256 << 20;
 /// Bytes of a line.
 const MOST_LINE: u64 = 1 << 20;
+/// How MCAP recordings begin.
+const MCAP: &[u8] = b"\x89MCAP";
 /// Largest number that is read: metres from the origin, radians.
-const FARTHEST: f64 = 1e6;
+pub(super) const FARTHEST: f64 = 1e6;
 
 /// How the two formats begin their lines.
 const READ: &str = "a look a line: `x y heading bearing range …`, or CARMEN's FLASER and \
@@ -43,8 +45,23 @@ pub enum Problem {
     NoFile,
     #[error("has more than {} MiB; cut the log into parts", MOST_BYTES >> 20)]
     TooLong,
-    #[error("is an MCAP recording, which is not read yet; write its scans as text, {READ}")]
+    #[error(
+        "is an MCAP recording, and reading those was left out of this program; run it with \
+         `cargo run --release --features mcap --`, or write its scans as text, {READ}"
+    )]
     Mcap,
+    #[error(
+        "cannot be read as an MCAP recording: {0}; mend it with `mcap recover`, or write it anew \
+         without compression (`mcap compress --compression none`)"
+    )]
+    Bag(String),
+    #[error("holds no sensor_msgs/LaserScan; record the topic of the scans, too")]
+    NoScanInBag,
+    #[error(
+        "tells nowhere where the scans of frame {0} were taken; record /tf and /tf_static, or \
+         odometry of that frame, too"
+    )]
+    NoPoseInBag(String),
     #[error("line {line}: has more than {} bytes; expected {READ}", MOST_LINE)]
     LongLine { line: usize },
     #[error("line {line}: is not UTF-8 text; expected {READ}")]
@@ -76,7 +93,7 @@ impl Log {
     /// # Errors
     /// [`LogError`] names the line and the field, and what was expected.
     pub fn read(path: &Path) -> Result<Self, LogError> {
-        let log = open(path).and_then(|file| Self::from_lines(BufReader::new(file)));
+        let log = open(path).and_then(|file| Self::from_file(BufReader::new(file)));
         let mut log = log.map_err(|problem| LogError {
             file: path.display().to_string(),
             problem,
@@ -89,7 +106,21 @@ impl Log {
         Ok(log)
     }
 
-    /// A log out of what a file holds.
+    fn from_file(mut file: impl BufRead) -> Result<Self, Problem> {
+        if !file.fill_buf()?.starts_with(MCAP) {
+            return Self::from_lines(file);
+        }
+        #[cfg(feature = "mcap")]
+        {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes)?;
+            super::bag::log(&bytes)
+        }
+        #[cfg(not(feature = "mcap"))]
+        Err(Problem::Mcap)
+    }
+
+    /// A log out of lines.
     ///
     /// # Errors
     /// As [`read`](Self::read).
@@ -104,9 +135,6 @@ impl Log {
                 .read_until(b'\n', &mut bytes)?;
             if bytes.is_empty() {
                 break;
-            }
-            if line == 1 && bytes.starts_with(b"\x89MCAP") {
-                return Err(Problem::Mcap);
             }
             if bytes.len() as u64 > MOST_LINE {
                 return Err(Problem::LongLine { line });
@@ -396,8 +424,8 @@ mod tests {
             Err(Problem::NotText { line: 2 })
         ));
         assert!(matches!(
-            Log::from_lines(&b"\x89MCAP0\r\n"[..]),
-            Err(Problem::Mcap)
+            Log::from_file(&b"\x89MCAP0\r\n"[..]),
+            Err(Problem::Mcap | Problem::Bag(_) | Problem::NoScanInBag)
         ));
         let endless = std::io::repeat(b'1');
         assert!(matches!(

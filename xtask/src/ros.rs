@@ -24,6 +24,10 @@ pub(crate) fn explores() -> Result<String> {
         .run()?;
     built(cargo(["test"])).run()?;
     built(cargo(["build"])).run()?;
+    command(&python)
+        .arg("ros2/tests/launch.py")
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .run()?;
     let node = target().join("release/explore");
     alone()?
         .arg(python)

@@ -153,12 +153,14 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         self.stuck >= self.config.limits.steps_of(NEAR_PATIENCE * range, 2, 3_600)
     }
 
-    fn fly_to(&mut self, goal: Option<Cell>) -> Option<Action<Point>> {
+    /// Towards `goal`, or further into the unknown if `beyond`.
+    fn fly_to(&mut self, goal: Option<Cell>, beyond: bool) -> Option<Action<Point>> {
         self.knowledge.set_goal(goal);
         self.knowledge.count_work(29);
         let goal = Point::over(goal?, 0.0);
+        let place = if beyond { self.beyond(goal) } else { goal };
         self.knowledge
-            .step_towards(goal, self.cruise())
+            .step_towards(place, self.cruise())
             .map(Action::Move)
     }
 
@@ -200,7 +202,7 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, T
             return self.recovery.tick(&mut self.knowledge);
         }
         if let Some(pocket) = self.nearest_pocket()
-            && let Some(action) = self.fly_to(Some(pocket))
+            && let Some(action) = self.fly_to(Some(pocket), gain > 0.0)
         {
             return action;
         }
@@ -209,6 +211,6 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, T
             return Action::Move(to);
         }
         let frontier = self.own_frontier();
-        self.fly_to(frontier).unwrap_or(Action::Wait)
+        self.fly_to(frontier, true).unwrap_or(Action::Wait)
     }
 }

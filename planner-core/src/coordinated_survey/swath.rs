@@ -24,6 +24,11 @@ const LEAST_GAIN: f32 = 0.11;
 /// steps: their views overlap, and shared out frontiers lead them apart.
 const APART: f32 = 2.0;
 
+/// The same with so many rivals nearer than that. Fewer have room enough, and over a town
+/// they would lose more by it.
+const CROWD: usize = 3;
+const CROWD_APART: f32 = 4.0;
+
 /// Places that a probe looks at ahead, a quarter of a range apart.
 const LOOKAHEAD: u8 = 4;
 const SPACING: f32 = 0.25;
@@ -105,10 +110,15 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
 
     fn is_among_rivals(&self) -> bool {
         let here = self.knowledge.position();
-        let apart = APART * self.config.limits.range;
-        self.knowledge
-            .rivals()
-            .any(|peer| peer.status.position.plan_distance(here) < apart)
+        let range = self.config.limits.range;
+        let rivals_within = |ranges: f32| {
+            let rivals = self.knowledge.rivals();
+            let is_near = |at: Point| at.plan_distance(here) < ranges * range;
+            rivals
+                .filter(move |peer| is_near(peer.status.position))
+                .count()
+        };
+        rivals_within(APART) > 0 || rivals_within(CROWD_APART) >= CROWD
     }
 
     /// The vicinity without what is nearer to others; of many, to the nearest six: the

@@ -39,6 +39,9 @@ const DISCOUNT: f32 = 0.825;
 /// Radius of what a robot is taken to see from cruise height, as a share of R.
 const SIGHT: f32 = 0.85;
 
+/// The most of it, as a share of what the range reaches on flat ground from there.
+const SIGHT_OF_FLAT: f32 = 0.912;
+
 /// Worth of a column along known surface or the border, beside 1 for any column: a
 /// swath then runs along what is known and leaves no strips behind.
 const RIM: f32 = 4.4;
@@ -187,7 +190,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     fn shown_along(&self, mut vicinity: Vicinity, heading: f32) -> f32 {
         let here = self.knowledge.position();
         let spacing = SPACING * self.config.limits.range;
-        let radius = SIGHT * self.config.limits.range;
+        let radius = self.sight();
         let (sin, cos) = math::sin_cos(heading);
         let (mut value, mut most, mut worth) = (0.0f32, 0.0, 1.0);
         for ahead in 1..=LOOKAHEAD {
@@ -201,8 +204,16 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
         value / most
     }
 
+    /// Radius of what a robot is taken to see from cruise height: little where the least
+    /// altitude leaves little of the range.
+    fn sight(&self) -> f32 {
+        let (range, cruise) = (self.config.limits.range, self.cruise());
+        let flat = math::sqrt((range * range - cruise * cruise).max(1.0));
+        (SIGHT * range).min(SIGHT_OF_FLAT * flat)
+    }
+
     /// Rows that [`shown_along`](Self::shown_along) counts, for the record of work.
     fn disc_rows(&self) -> u32 {
-        u32::from(LOOKAHEAD) * (2.0 * SIGHT * self.config.limits.range) as u32
+        u32::from(LOOKAHEAD) * (2.0 * self.sight()) as u32
     }
 }

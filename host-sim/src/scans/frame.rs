@@ -98,6 +98,11 @@ impl Frame {
         (self.origin.0 + look.x / size, self.origin.1 - look.y / size)
     }
 
+    /// How far beams count, in cells: no farther than the scanner reaches.
+    pub(super) fn reach(&self, log: &Log) -> f64 {
+        f64::from(self.options.range).min(f64::from(log.nothing_from) / self.options.cell_size)
+    }
+
     /// The measurements of a look: bearings, from east to south, and ranges in cells,
     /// infinite where nothing was hit.
     pub(super) fn measured(&self, log: &Log, look: &Look) -> impl Iterator<Item = (f64, f64)> {

@@ -106,7 +106,7 @@ impl Replayed {
     }
 
     fn look(&mut self, log: &Log, frame: &Frame, look: &Look) {
-        let (place, reach) = (frame.place(look), f64::from(frame.options.range));
+        let (place, reach) = (frame.place(look), frame.reach(log));
         for (bearing, range) in frame.measured(log, look) {
             let angle = bearing - look.heading;
             self.votes
@@ -122,7 +122,7 @@ impl Replayed {
                 y: place.1 as f32,
                 heading: -look.heading as f32,
             },
-            sensor: RangeSensor::new(frame.options.range.into()),
+            sensor: RangeSensor::new(reach as f32),
             beams,
         };
         let sighting = scan.sighting();
@@ -233,6 +233,22 @@ mod tests {
         assert_eq!(replayed.belief(at(10, 4)), Belief::Free);
         assert_eq!(replayed.belief(at(10, -1)), Belief::Wall);
         assert_eq!(replayed.verdict(at(10, -1)), Verdict::Wall);
+    }
+
+    /// A scanner that reaches two metres in a room of five: where it hit nothing, no wall is
+    /// opened, and nothing is known beyond.
+    #[test]
+    fn a_beam_that_hit_nothing_frees_no_farther_than_the_scanner_reaches() {
+        let mut log = room();
+        log.nothing_from = 2.0;
+        let far = log.looks.iter_mut().flat_map(|look| &mut look.readings);
+        far.for_each(|reading| reading.range = reading.range.min(2.0));
+        let (replayed, score) = log.replay(OPTIONS).unwrap();
+        assert_eq!((score.opened_percent, score.driven_closed), (0.0, 0));
+        // The wall across, 3.9 m away at the nearest.
+        let at = |x: i16, y: i16| Cell::new(14 + x, 20 - y);
+        assert_eq!(replayed.belief(at(10, 20)), Belief::Unknown);
+        assert_eq!(replayed.belief(at(10, -1)), Belief::Wall);
     }
 
     #[test]

@@ -41,6 +41,9 @@ pub struct Recorded {
 pub fn recorded(
     bytes: &[u8],
 ) -> Result<impl Iterator<Item = Result<Recorded, RecordingError>>, RecordingError> {
+    if !bytes.starts_with(mcap::MAGIC) {
+        return Err(RecordingError::Unread(mcap::McapError::BadMagic));
+    }
     let options = Options::IgnoreEndMagic.into();
     let messages = MessageStream::new_with_options(bytes, options);
     Ok(messages.map_err(RecordingError::Unread)?.map(|message| {

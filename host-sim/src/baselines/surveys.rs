@@ -19,7 +19,7 @@ pub enum Guide {
     /// The robot: the closest frontier, chosen anew in every step.
     Closest,
     /// The robot: the closest frontier, and the next one when it has reached that
-    /// [Yamauchi1997].
+    /// \[Yamauchi1997\].
     ClosestUntilReached,
     /// A centre that knows the map and all robots: [`assign`].
     Centre,

@@ -7,7 +7,7 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::paint::{INK, robot_color, text};
+use super::paint::{INK, series_color, text};
 use super::{DrawError, write_png};
 
 /// Charts side by side that share a title and a legend.
@@ -166,7 +166,7 @@ impl Chart {
         let size = (room / self.title.chars().count().max(1) as u32).clamp(9, 19);
         area.draw(&Text::new(self.title.as_str(), (24, 14), text(size)))?;
         for (series, (x, y)) in self.legend(width) {
-            let color = robot_color(series.color);
+            let color = series_color(series.color);
             area.draw(&Rectangle::new(
                 [(x, y + 2), (x + 18, y + 14)],
                 color.filled(),
@@ -256,7 +256,7 @@ impl Series {
     where
         DB::ErrorType: 'static,
     {
-        let color = robot_color(self.color);
+        let color = series_color(self.color);
         let middle = number as f64 - (count as f64 - 1.0) / 2.0;
         match self.style {
             Style::Bars => {

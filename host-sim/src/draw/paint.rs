@@ -82,6 +82,16 @@ pub(super) fn robot_color(robot: usize) -> RGBColor {
     ROBOTS[robot % ROBOTS.len()]
 }
 
+/// The colour of a line in a chart: those of robots, and a gray.
+pub(super) fn series_color(series: usize) -> RGBColor {
+    const GRAY: RGBColor = RGBColor(136, 136, 136);
+    let colors = ROBOTS.iter().chain([&GRAY]);
+    { colors }
+        .nth(series % (ROBOTS.len() + 1))
+        .copied()
+        .unwrap_or(GRAY)
+}
+
 /// The colour of what belongs to something of that colour, and is less.
 pub(super) fn pale(RGBColor(red, green, blue): RGBColor) -> Rgb<u8> {
     Rgb([red, green, blue].map(|of| 255 - (255 - of) / 2))

@@ -79,5 +79,10 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Drawn {
 
 /// A planner's name without what its colour says anyway.
 fn short(name: &str) -> String {
-    name.replace("coordinated-", "").replace("-frontier", "")
+    let long = ["coordinated-", "-frontier", "greedy-", "closest-"];
+    long.iter()
+        .fold(name.to_owned(), |name, part| match name.replace(part, "") {
+            short if short.is_empty() => name,
+            short => short,
+        })
 }

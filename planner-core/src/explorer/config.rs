@@ -112,7 +112,7 @@ impl Config {
         };
         let body = match self.clearance {
             0 => 0,
-            _ => body::CELLS_WORK + 3 * body::WINDOW_WORK + 4 * body::TILE_WORK,
+            _ => body::CELLS_WORK + 5 * body::WINDOW_WORK + 4 * body::TILE_WORK,
         };
         most.saturating_add(TICK_WORK + far::LAST_WORK + body)
     }

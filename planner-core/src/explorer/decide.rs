@@ -5,7 +5,6 @@ use super::aside::Verdict;
 use super::far::{self, Outcome};
 use super::near::{Aim, Candidate};
 use crate::robot::{Stop, Wait};
-use crate::role::Plan;
 use crate::zeroed::Maybe;
 
 /// What the near decision has come to.
@@ -114,14 +113,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
                 self.role.changes += 1;
             }
         }
-        let mut path = candidate.path;
-        path.truncate(self.config.way.max(1));
         self.last_goal = Some(candidate.goal);
-        self.role.plan = Some(Plan {
-            goal: candidate.goal,
-            remaining: candidate.length,
-            path,
-        });
+        self.take(candidate);
         true
     }
 

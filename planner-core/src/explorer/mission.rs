@@ -21,12 +21,11 @@ use super::Explorer;
 use super::aside::Verdict;
 use super::body::body_cells;
 use super::far::Outcome;
-use super::near::Candidate;
 use crate::cell::Cell;
 use crate::map::{CellSet, Learnt};
 use crate::planner::{Errands, KeepOutError};
 use crate::robot::{Action, Stop, Wait};
-use crate::role::{End, Errand, Plan};
+use crate::role::{End, Errand};
 use crate::zeroed::Maybe;
 
 /// What the robot can still spend, in steps.
@@ -146,6 +145,9 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             match self.search_way(errand.to) {
                 // Rather than a way round that it cannot make, it tries again.
                 Outcome::Found(way) if self.budget.lasts_for(way.length) || !self.may_open() => {
+                    if self.role.plan.is_some() {
+                        self.role.measure_rest(way.length);
+                    }
                     self.take(way);
                 }
                 Outcome::Found(_) | Outcome::Lost => {
@@ -224,19 +226,6 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             self.far.start_way(to, &self.around);
         }
         self.search_far()
-    }
-
-    fn take(&mut self, way: Candidate) {
-        if self.role.plan.is_some() {
-            self.role.measure_rest(way.length);
-        }
-        let mut path = way.path;
-        path.truncate(self.config.way.max(1));
-        self.role.plan = Some(Plan {
-            goal: way.goal,
-            remaining: way.length,
-            path,
-        });
     }
 
     /// Whether there may be a shorter way than the one that was found, now or soon.

@@ -7,6 +7,8 @@
 //! it is no longer for it.
 
 use super::Explorer;
+use super::body::{Fit, MAX_CLEARANCE, WINDOW_WORK, fit};
+use super::near::Candidate;
 use super::surroundings::Layer;
 use super::window::{Rows, Window};
 use crate::cell::{Cell, Direction};
@@ -15,6 +17,9 @@ use crate::role::{Path, Plan};
 /// Steps of the way that are tried for a waypoint; the window around the robot seldom
 /// holds more.
 const LONGEST: u32 = 64;
+
+/// Steps of a way that are kept clear of walls.
+const NEXT: u16 = 16;
 
 impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     /// The cells of the way at hand, from the next one on: at most 256, up to the goal or
@@ -41,6 +46,41 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
             }
         }
         farthest
+    }
+
+    /// From now on the robot follows this way.
+    #[inline(never)] // small rather than fast
+    pub(super) fn take(&mut self, way: Candidate) {
+        let mut path = way.path;
+        path.truncate(self.config.way.max(1));
+        if self.around.clearance > 0 {
+            self.work += 2 * WINDOW_WORK;
+            self.keep_clear(&mut path);
+        }
+        self.role.plan = Some(Plan {
+            goal: way.goal,
+            remaining: way.length,
+            path,
+        });
+    }
+
+    /// As long a way, farther from walls: where one of the next steps leads beside a wall,
+    /// and the one after it would not, they change places, turns being made sooner or later.
+    /// Work: a few discs a step.
+    fn keep_clear(&self, path: &mut Path) {
+        let wider = (self.around.clearance + 1).min(MAX_CLEARANCE);
+        let has_room = |cell: Cell| fit(&self.around.map, wider, cell) == Fit::Clear;
+        for index in (0..NEXT).rev().chain(0..NEXT) {
+            let (Some(step), Some(after)) = (path.get(index), path.get(index + 1)) else {
+                continue;
+            };
+            let steps = path.steps().take(index.into());
+            let at = steps.fold(self.around.position, Cell::step);
+            let (here, other) = (at.step(step), at.step(after));
+            if step != after && has_room(other) && !has_room(here) && self.around.is_open(other) {
+                path.swap(index);
+            }
+        }
     }
 
     /// The robot is on `pose`, where no report told: keeps the plan if that is on the way,

@@ -70,8 +70,23 @@ impl Path {
     }
 
     pub(crate) fn first(&self) -> Option<Direction> {
-        let byte = self.steps.get(usize::from(self.first >> 2))?;
-        (self.length > 0).then(|| Direction::from_index(byte >> ((self.first & 3) * 2)))
+        self.get(0)
+    }
+
+    /// The step with this number, from 0 on.
+    pub(crate) fn get(&self, number: u16) -> Option<Direction> {
+        let place = self.first.wrapping_add(number as u8);
+        let byte = self.steps.get(usize::from(place >> 2))?;
+        (self.length > number).then(|| Direction::from_index(byte >> ((place & 3) * 2)))
+    }
+
+    /// Exchanges the step with this number and the next one, if there are both.
+    pub(crate) fn swap(&mut self, number: u16) {
+        if let (Some(step), Some(next)) = (self.get(number), self.get(number + 1)) {
+            let place = self.first.wrapping_add(number as u8);
+            self.set(place, next);
+            self.set(place.wrapping_add(1), step);
+        }
     }
 
     /// All of its steps.
@@ -100,7 +115,7 @@ mod tests {
     proptest! {
         #[test]
         fn a_path_is_a_queue_that_forgets_its_end(
-            operations in proptest::collection::vec((0u8..4, 0u8..4, 200u16..300), 0..900),
+            operations in proptest::collection::vec((0u8..5, 0u8..4, 200u16..300), 0..900),
         ) {
             let mut path = Path::new();
             let mut oracle = VecDeque::new();
@@ -117,6 +132,15 @@ mod tests {
                         prop_assert_eq!(path.push_back(step), room);
                         if room {
                             oracle.push_back(step);
+                        }
+                    }
+                    4 => {
+                        let number = usize::from(limit) % (oracle.len() + 1);
+                        let step = oracle.get(number).copied();
+                        prop_assert_eq!(path.get(number as u16), step);
+                        path.swap(number as u16);
+                        if number + 1 < oracle.len() {
+                            oracle.swap(number, number + 1);
                         }
                     }
                     2 => {

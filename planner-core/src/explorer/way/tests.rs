@@ -224,3 +224,37 @@ fn a_pose_elsewhere_drops_the_plan() {
     robot.observe(&Sighting::new(Cell::new(12, 20)));
     assert_eq!((robot.role.goal(), robot.waypoint()), (None, None));
 }
+
+/// A hall of 22×22 cells, and a body of 3×3 at its northern wall: it leaves the wall at once,
+/// comes to another one as late as it can, and goes no farther.
+#[test]
+fn of_ways_of_equal_length_the_one_farther_from_walls_is_taken() {
+    use Direction::{East, South, West};
+    let extent = Extent::new(SIDE as u16, SIDE as u16);
+    let config = Config {
+        clearance: 1,
+        ..Config::new()
+    };
+    let start = Cell::new(3, 2);
+    let mut robot = Small::new(config, RobotId(0), extent, start).unwrap();
+    let is_wall = |cell: Cell| !(1..SIDE - 1).contains(&cell.x) || !(1..SIDE - 1).contains(&cell.y);
+    for at in [Cell::new(12, 12), Cell::new(3, 12), Cell::new(12, 2), start] {
+        robot.observe(&look(at, 15, is_wall));
+    }
+    let kept = |steps: &[Direction]| {
+        let mut path = Path::new();
+        steps.iter().for_each(|step| assert!(path.push_back(*step)));
+        robot.keep_clear(&mut path);
+        path.steps().collect::<Vec<_>>()
+    };
+    assert_eq!(kept(&[East, East, East, South]), [South, East, East, East]);
+    // Along the western wall it goes last, though it goes there first.
+    assert_eq!(
+        kept(&[West, South, South, South]),
+        [South, South, South, West]
+    );
+    // Nothing is gained in the middle, nor where there is no other way.
+    for steps in [[South, South, East, South], [East, East, East, East]] {
+        assert_eq!(kept(&steps), steps);
+    }
+}

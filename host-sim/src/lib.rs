@@ -31,6 +31,7 @@ pub mod measured;
 pub mod medium;
 mod mission;
 mod motion;
+mod pixels;
 pub mod planners;
 pub mod record;
 pub mod robot;

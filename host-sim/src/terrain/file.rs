@@ -13,6 +13,7 @@ use super::Terrain;
 use super::foreign::foreign;
 use super::grid::{from_grid, is_grid};
 use crate::bytes::{self, Unread};
+use crate::pixels;
 use crate::scene::octree::{Cube, OcTree};
 
 /// Columns along the longest side of a map.
@@ -134,15 +135,13 @@ impl Terrain {
 }
 
 fn from_image(bytes: &[u8], format: ImageFormat) -> Result<Terrain, TerrainError> {
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let size = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions();
     // Before a picture is decoded that is a few bytes of file and gigabytes of pixels.
     let extent = fitting(size.map_err(TerrainError::BrokenImage)?)?;
     let mut limits = Limits::default();
     limits.max_image_width = Some(LARGEST);
     limits.max_image_height = Some(LARGEST);
-    reader.limits(limits);
-    let image = reader.decode().map_err(TerrainError::BrokenImage)?;
+    let image = pixels::decode(bytes, format, limits).map_err(TerrainError::BrokenImage)?;
     let image = image.into_rgba16();
     for (x, y, pixel) in image.enumerate_pixels() {
         let [red, green, blue, alpha] = pixel.0;

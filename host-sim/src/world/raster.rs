@@ -13,6 +13,7 @@ use super::error::Problem;
 use super::foreign::Foreign;
 use super::grid::{self, Grid, LARGEST};
 use crate::excerpt::excerpt;
+use crate::pixels;
 
 const FREE: u8 = 255;
 const OBSTACLE: u8 = 0;
@@ -134,12 +135,9 @@ pub(super) fn cut(
     if bytes.is_empty() {
         return Err(Problem::BrokenImage("the file is empty".into()));
     }
-    let open = || {
-        ImageReader::new(Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|error| Problem::BrokenImage(error.to_string()))
-    };
-    let (width, height) = open()?.into_dimensions().map_err(broken)?;
+    let format = image::guess_format(bytes).map_err(broken)?;
+    let reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let (width, height) = reader.into_dimensions().map_err(broken)?;
     if width == 0 || height == 0 {
         return Err(Problem::Empty);
     }
@@ -158,9 +156,7 @@ pub(super) fn cut(
     )?;
     let mut limits = Limits::default();
     limits.max_alloc = Some(MOST_BYTES);
-    let mut reader = open()?;
-    reader.limits(limits);
-    let image = reader.decode().map_err(broken)?;
+    let image = pixels::decode(bytes, format, limits).map_err(broken)?;
 
     let has_alpha = image.color().has_alpha();
     let mut tally = Tally::default();

@@ -6,7 +6,9 @@ use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
-use crate::scene::{LARGEST, LEVELS, Scene};
+use crate::scene::Scene;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::scene::{LARGEST, LEVELS};
 
 /// Largest planner that is built where everything else is; larger ones need more stack.
 #[cfg(not(target_arch = "wasm32"))]
@@ -92,6 +94,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW,
 ///
 /// # Errors
 /// The scene is larger than the largest.
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) fn pilot(
     scene: &Scene,
     config: Config,
@@ -105,6 +108,19 @@ pub(super) fn pilot(
             scene, config, id,
         ),
     }
+}
+
+/// The same in the browser, whose stack holds the smallest alone.
+///
+/// # Errors
+/// The scene is larger.
+#[cfg(target_arch = "wasm32")]
+pub(super) fn pilot(
+    scene: &Scene,
+    config: Config,
+    id: RobotId,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    survey::<8, 8, 24>(scene, config, id)
 }
 
 fn survey<const TW: usize, const TH: usize, const L: usize>(
@@ -134,7 +150,7 @@ fn boxed<T: Send>(make: fn() -> T) -> Box<T> {
     })
 }
 
-/// The same in the browser, where only small scenes are flown in.
+/// The same in the browser.
 #[cfg(target_arch = "wasm32")]
 fn boxed<T>(make: fn() -> T) -> Box<T> {
     Box::new(make())

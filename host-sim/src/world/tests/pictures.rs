@@ -108,6 +108,17 @@ fn transparent_pixels_are_those_of_map_server() {
     assert_eq!(cells, "###.##\n");
 }
 
+/// A palette of five bytes: one colour, and two thirds of another.
+#[test]
+fn a_palette_that_ends_within_a_colour_is_refused() {
+    let palette = b"\x89PNG\x0d\x0a\x1a\x0a\x00\x00\x00\x0dIHDR\x00\x00\x00\x04\x00\x00\x00\x01\x02\x03\x00\x00\x00\x84R\xe7^\x00\x00\x00\x05PLTE\x00\x00\x00\xff\xff\xdc@\xc6\xfe\x00\x00\x00\x0aIDATx\x9cc\x98\x00\x00\x00\x92\x00\x91\x12\x22\xfb{\x00\x00\x00\x00IEND\xaeB`\x82";
+    let error = read("a.png", palette).unwrap_err().to_string();
+    assert!(
+        error.contains("its palette ends within a colour"),
+        "{error}"
+    );
+}
+
 #[test]
 fn every_kind_of_png_and_pgm() {
     // Palette with a transparent entry; interlaced; one gray that is transparent.

@@ -51,7 +51,7 @@ impl Other {
                 continue;
             }
             let reach = swept_reach(clearance, dy);
-            // Eight columns west of the tile's first.
+            // Bit 12 is the tile's first column.
             let wide = ((2u32 << (2 * reach)) - 1) << (x - reach + 12).unsigned_abs();
             cells |= u64::from(wide >> 12 & 0xff) << (8 * row.unsigned_abs());
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The modules of planner-core, ground first. A module imports those of the lines above
 /// its own: so the planners, in the last one, do not know each other.
 const PLANNER_CORE: &[&[&str]] = &[
-    &["cell", "list", "math", "zeroed"],
+    &["cell", "list", "logging", "math", "zeroed"],
     &["point", "rng", "robot", "tile"],
     &["cao", "role", "sight", "surface", "volume"],
     &["map"],

@@ -7,6 +7,9 @@
 #[cfg(test)]
 extern crate std;
 
+#[macro_use]
+mod logging;
+
 #[cfg(feature = "survey")]
 pub mod cao;
 mod cell;

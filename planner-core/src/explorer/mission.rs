@@ -107,7 +107,7 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
     #[inline(never)] // mostly there is none
     fn mind_errand(&mut self) -> Option<Action> {
         let now = self.around.now;
-        self.others.forget(now, self.config.memory);
+        self.others.forget(self.id, now, self.config.memory);
         if self.around.aside.tick(self.config.patience, now) {
             self.begin_round();
         }

@@ -136,6 +136,7 @@ mod decide;
 mod evidence;
 mod far;
 mod lean;
+mod logs;
 mod looking;
 mod mission;
 mod near;
@@ -324,6 +325,14 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         self.moves = 0;
         self.waiting = Maybe::Nothing;
         self.work = 0;
+        let extent = self.around.map.extent();
+        log!(
+            info,
+            "robot {}: starts at {} of {} cells",
+            id.0,
+            start,
+            extent
+        );
     }
 
     fn learn(&mut self, learnt: Learnt) {
@@ -415,49 +424,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         }
     }
 
-    /// The next step of the plan, if it can be made.
-    fn next_step(&self) -> Option<Direction> {
-        let step = self.role.plan.as_ref()?.path.first()?;
-        let next = self.around.position.step(step);
-        self.around.is_open(next).then_some(step)
-    }
-}
-
-impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
-    fn observe(&mut self, sighting: &Sighting) -> Learnt {
-        let centre = sighting.centre();
-        let map = &self.around.map;
-        self.is_astray = !map.extent().contains(centre) || map.keeps_out(centre);
-        if self.is_astray {
-            return Learnt::default();
-        }
-        let mut is_carried = false;
-        if centre != self.around.position {
-            is_carried = !self.follow(centre);
-            self.around.position = centre;
-            self.stepping = false;
-            self.looks = 0;
-            self.lose_way_home();
-        }
-        if is_carried {
-            self.role.plan = None;
-        }
-        let mut learnt = self.look_around(sighting);
-        if self.around.clearance > 0 {
-            learnt += self.around.lie();
-        }
-        if is_carried && learnt.anything() {
-            // What it stopped for was true of another place.
-            self.go_on();
-        }
-        self.others.purse.saw(learnt.cells);
-        self.link.look(sighting);
-        self.link.announce(&mut self.around.map);
-        self.learn(learnt);
-        learnt
-    }
-
-    fn tick(&mut self) -> Action {
+    /// The tick itself.
+    fn decide(&mut self) -> Action {
         self.around.now = self.around.now.saturating_add(1);
         self.link.tick();
         self.evidence.tick();
@@ -485,7 +453,8 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             let edge = self.around.map.free_edge_cells();
             return self.finish(Stop::nothing_left(edge));
         }
-        self.others.forget(self.around.now, self.config.memory);
+        self.others
+            .forget(self.id, self.around.now, self.config.memory);
         if self.others.pay(&self.around.map) {
             // It was made of hints.
             self.far.cancel();
@@ -536,6 +505,59 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             }
         }
         self.act()
+    }
+
+    /// The next step of the plan, if it can be made.
+    fn next_step(&self) -> Option<Direction> {
+        let step = self.role.plan.as_ref()?.path.first()?;
+        let next = self.around.position.step(step);
+        self.around.is_open(next).then_some(step)
+    }
+}
+
+impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
+    fn observe(&mut self, sighting: &Sighting) -> Learnt {
+        let centre = sighting.centre();
+        let map = &self.around.map;
+        let was_astray = self.is_astray;
+        self.is_astray = !map.extent().contains(centre) || map.keeps_out(centre);
+        if self.is_astray {
+            self.log_astray(was_astray, centre);
+            return Learnt::default();
+        }
+        let mut is_carried = false;
+        if centre != self.around.position {
+            is_carried = !self.follow(centre);
+            self.around.position = centre;
+            self.stepping = false;
+            self.looks = 0;
+            self.lose_way_home();
+        }
+        if is_carried {
+            self.role.plan = None;
+        }
+        let was_lost = self.evidence.is_lost();
+        let mut learnt = self.look_around(sighting);
+        self.log_look(was_lost, learnt);
+        if self.around.clearance > 0 {
+            learnt += self.around.lie();
+        }
+        if is_carried && learnt.anything() {
+            // What it stopped for was true of another place.
+            self.go_on();
+        }
+        self.others.purse.saw(learnt.cells);
+        self.link.look(sighting);
+        self.link.announce(&mut self.around.map);
+        self.learn(learnt);
+        learnt
+    }
+
+    fn tick(&mut self) -> Action {
+        let (had_stopped, waited) = (self.role.has_stopped(), self.waiting);
+        let action = self.decide();
+        self.log_decision(had_stopped, waited, action);
+        action
     }
 
     fn waiting(&self) -> Option<Wait> {
@@ -652,8 +674,16 @@ impl<const TW: usize, const TH: usize> Contact<TW, TH> for Explorer<TW, TH> {
 
     fn hear(&mut self, id: RobotId, status: Status) {
         if id != self.id {
-            self.others
-                .hear(id, status, self.around.position, self.around.now);
+            let (own, now) = (self.around.position, self.around.now);
+            if self.others.hear(id, status, own, now) {
+                log!(
+                    debug,
+                    "robot {}: hears robot {} at {}",
+                    self.id.0,
+                    id.0,
+                    status.position
+                );
+            }
         }
     }
 

@@ -79,8 +79,8 @@ impl Others {
         }
     }
 
-    /// Takes in a status. Work: the list once.
-    pub(crate) fn hear(&mut self, id: RobotId, status: Status, own: Cell, now: u32) {
+    /// Takes in a status; says whether the robot is new to the list. Work: the list once.
+    pub(crate) fn hear(&mut self, id: RobotId, status: Status, own: Cell, now: u32) -> bool {
         let heard = Other {
             id,
             position: status.position,
@@ -90,14 +90,15 @@ impl Others {
         };
         if let Some(known) = self.list.iter_mut().find(|other| other.id == id) {
             *known = heard;
-            return;
+            return false;
         }
         if self.list.is_full() && !self.make_room(&heard, own) {
-            return;
+            return false;
         }
         // There is room now; by id, so that ties fall the same way for everybody.
         let place = self.list.iter().take_while(|other| other.id < id).count();
         list::insert(&mut self.list, place, heard);
+        true
     }
 
     /// Forgets a robot that has stopped, or else the farthest, if it is farther
@@ -126,10 +127,15 @@ impl Others {
         last.is_some()
     }
 
-    /// Forgets whom nothing was heard of for more than `memory` ticks.
-    pub(crate) fn forget(&mut self, now: u32, memory: u32) {
-        self.list
-            .retain(|other| now.saturating_sub(other.heard_at) <= memory);
+    /// Robot `id` forgets whom nothing was heard of for more than `memory` ticks.
+    pub(crate) fn forget(&mut self, id: RobotId, now: u32, memory: u32) {
+        self.list.retain(|other| {
+            let is_kept = now.saturating_sub(other.heard_at) <= memory;
+            if !is_kept {
+                log!(debug, "robot {}: hears robot {} no more", id.0, other.id.0);
+            }
+            is_kept
+        });
     }
 
     /// Pays for a tick with them; says whether they do not count any more from now on.

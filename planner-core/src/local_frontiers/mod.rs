@@ -170,6 +170,13 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
         self.closed = Closed::new();
         self.is_astray = false;
         self.work = 0;
+        log!(
+            info,
+            "robot {}: starts at {} of {} cells",
+            id.0,
+            start,
+            extent
+        );
         Ok(())
     }
 
@@ -288,8 +295,7 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
             }
             Motion::Held => {}
             Motion::Blocked => {
-                #[cfg(feature = "defmt")]
-                defmt::warn!("{} blocked at {}", self.id, next);
+                log!(debug, "robot {}: is blocked at {}", self.id.0, next);
                 self.goal = None;
                 self.closed.close(next);
                 if self.closed.is_hopeless() {

@@ -93,9 +93,8 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
         let again = self.config.second_chance && self.others.anybody_explores();
         if again && (at_start || self.phase == Phase::SecondChance) {
             // [Gauville2019 §6.1 step 2b i]
-            #[cfg(feature = "defmt")]
             if self.phase == Phase::Exploring {
-                defmt::info!("{} leaves its start again", self.id);
+                log!(info, "robot {}: leaves its start again", self.id.0);
             }
             self.phase = Phase::SecondChance;
             self.trace.mark(self.position);
@@ -167,8 +166,13 @@ impl<const TW: usize, const TH: usize> LocalFrontiers<TW, TH> {
         } else {
             reason
         };
-        #[cfg(feature = "defmt")]
-        defmt::info!("{} stops at {}: {}", self.id, self.position, stop);
+        log!(
+            info,
+            "robot {}: stops at {}: {}",
+            self.id.0,
+            self.position,
+            stop
+        );
         self.goal = None;
         self.phase = Phase::Stopped(stop);
         Action::Stop(stop)

@@ -223,6 +223,7 @@ impl<const TH: usize> Link<TH> {
         let of = |frame: &&Frame| (frame.sender, frame.sequence);
         let read = read.as_ref().map_err(|&error| error);
         let frame = self.sender.admit(bytes, read, of)?;
+        let contradictions = self.sender.hearsay.contradictions;
         let mut learnt = Learnt::default();
         let mut last = None;
         for record in &frame.tiles {
@@ -240,6 +241,10 @@ impl<const TH: usize> Link<TH> {
             }
         }
         self.sender.hearsay.told(learnt.cells);
+        let now = self.sender.hearsay.contradictions;
+        if now > contradictions {
+            self.log_contradictions(frame.sender, now, contradictions == 0);
+        }
         map.take_changed();
         let is_news = self.is_news(frame.sender, frame.sequence);
         Ok(Heard {
@@ -247,6 +252,26 @@ impl<const TH: usize> Link<TH> {
             learnt,
             status: is_news.then_some(frame.status),
         })
+    }
+
+    /// Somebody told otherwise than the robot saw: the first time that is worth a look.
+    fn log_contradictions(&self, sender: RobotId, sum: u16, is_first: bool) {
+        let (id, sender) = (self.sender.id.0, sender.0);
+        if is_first {
+            log!(
+                warn,
+                "robot {}: robot {} tells otherwise than it sees",
+                id,
+                sender
+            );
+        }
+        log!(
+            debug,
+            "robot {}: {} cells told otherwise, the last by robot {}",
+            id,
+            sum,
+            sender
+        );
     }
 
     /// Whether a sender's number follows its last one, which it then becomes: not by

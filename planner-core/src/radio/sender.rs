@@ -132,7 +132,15 @@ impl<const N: usize> Sender<N> {
             }
             Ok(frame)
         });
-        admitted.inspect_err(|&error| self.hearsay.refuse(error))
+        admitted.inspect_err(|&error| {
+            let (id, is_first) = (self.id.0, self.hearsay.same_id == 0);
+            match error {
+                FrameError::Own => log!(trace, "robot {}: {}", id, error),
+                FrameError::SameId(_) if is_first => log!(warn, "robot {}: {}", id, error),
+                _ => log!(debug, "robot {}: refuses a frame: {}", id, error),
+            }
+            self.hearsay.refuse(error);
+        })
     }
 }
 

@@ -173,6 +173,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.resumed = false;
         self.waiting = Maybe::Nothing;
         self.work = 0;
+        log!(info, "robot {}: starts over {} columns", id.0, extent);
         Ok(())
     }
 
@@ -459,6 +460,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     /// Stops the robot for `reason`, until it knows more.
     pub fn stop(&mut self, reason: Stop) -> Action<Point> {
         self.goal = None;
+        if !self.stopped {
+            log!(info, "robot {}: stops: {}", self.link.id().0, reason);
+        }
         self.stopped = true;
         self.reason = (reason, self.surface.known_columns());
         Action::Stop(reason)

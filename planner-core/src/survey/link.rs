@@ -43,6 +43,11 @@ impl Link {
         }
     }
 
+    /// The robot's own name.
+    pub(super) const fn id(&self) -> RobotId {
+        self.sender.id
+    }
+
     /// Another step: the budget of bytes grows.
     pub(super) fn tick(&mut self) {
         self.sender.tick();

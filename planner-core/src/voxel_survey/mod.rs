@@ -239,6 +239,13 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.waiting = Maybe::Nothing;
         self.work = 0;
         self.resume();
+        log!(
+            info,
+            "robot {}: starts in {} columns of {} voxels",
+            id.0,
+            extent,
+            levels
+        );
         Ok(())
     }
 

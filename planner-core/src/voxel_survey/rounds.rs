@@ -22,6 +22,15 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     pub(super) fn stop(&mut self, reason: Stop<Voxel>) -> Action<Voxel, Voxel> {
         self.way.clear();
+        if !self.stopped {
+            log!(
+                info,
+                "robot {}: stops at {}: {}",
+                self.sender.id.0,
+                self.position,
+                reason
+            );
+        }
         self.stopped = true;
         self.reason = (reason, self.volume.known_voxels());
         Action::Stop(reason)

@@ -45,3 +45,8 @@ pub mod sensor;
 pub mod summary;
 pub mod terrain;
 pub mod world;
+
+/// The main loop in docs/porting.md compiles.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/porting.md")]
+struct Porting;

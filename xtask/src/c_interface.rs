@@ -85,7 +85,7 @@ pub(crate) fn functions(header: &str) -> Vec<&str> {
 }
 
 /// A program in C that does everything wrongly gets answers, on the host and under
-/// sanitizers; and the header compiles as C and as C++.
+/// sanitizers; the header compiles as C and as C++, and so does the C in docs/porting.md.
 pub(crate) fn misuse_is_answered() -> Result<String> {
     install::host_compiler()?;
     cargo(["build", "-p=c-api"]).run()?;
@@ -111,7 +111,23 @@ pub(crate) fn misuse_is_answered() -> Result<String> {
     compiler("c++11")
         .args(["-fsyntax-only", "-x", "c++", HEADER])
         .run()?;
+    let shown = folder.join("porting.c");
+    fs::write(&shown, shown_in("docs/porting.md")?)?;
+    compiler("c11").arg("-fsyntax-only").arg(&shown).run()?;
     Ok(String::new())
+}
+
+/// The blocks of C in a document.
+fn shown_in(document: &str) -> Result<String> {
+    let text = fs::read_to_string(shell::root().join(document)).context(document.to_owned())?;
+    let blocks = text.split("\n```c\n").skip(1);
+    let code: String = blocks
+        .filter_map(|block| block.split("```").next())
+        .collect();
+    if code.is_empty() {
+        bail!("{document} shows no C");
+    }
+    Ok(code)
 }
 
 /// The example in C links with the object and newlib, explores in the emulator, and runs

@@ -1,4 +1,4 @@
-//! Files of surveys: any bytes are an error or a terrain, a tree or a trace that can be
+//! Files of surveys: any bytes are an error or a terrain, a tree, a scene or a trace that can be
 //! drawn and written again. The last two kinds have a digest that fits, so that what is
 //! behind it is reached.
 #![no_main]
@@ -7,7 +7,7 @@ use host_sim::draw;
 use host_sim::scenario::Event;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::Scenario as VoxelScenario;
-use host_sim::scene::Scene;
+use host_sim::scene::{Free, Scene, SceneOptions};
 use host_sim::scene::octree::OcTree;
 use host_sim::record::voxels::{self, VoxelTrace};
 use host_sim::record::Deed;
@@ -23,7 +23,7 @@ fuzz_target!(|input: &[u8]| {
     let &[kind, ref bytes @ ..] = input else {
         return;
     };
-    match kind % 6 {
+    match kind % 7 {
         0 => {
             if let Ok(terrain) = Terrain::from_bytes(bytes, "bt") {
                 assert!(terrain.extent().cells() > 0);
@@ -39,6 +39,7 @@ fuzz_target!(|input: &[u8]| {
                 heights(Trace::read(&file[..]));
             }
         }
+        6 => scene(bytes),
         _ => {
             let mut file = Vec::new();
             if made_voxels(&mut Bytes(bytes)).write(&mut file).is_ok() {
@@ -64,6 +65,27 @@ fn tree(bytes: &[u8]) {
         assert_eq!(OcTree::read(&again[..]).unwrap(), tree);
     }
     let _ = Terrain::from_bytes(&file, "bt");
+}
+
+/// A tree, a cloud or a mesh, in any of its formats; the beginning that each needs is found
+/// from the files of the corpus. What is refused is refused in words that a terminal can show.
+fn scene(bytes: &[u8]) {
+    let &[options, ref file @ ..] = bytes else {
+        return;
+    };
+    let options = SceneOptions {
+        voxel_size: (options & 1 == 0).then_some(0.25),
+        free: [None, Some(Free::Rest), Some(Free::Rays), None][usize::from(options >> 1 & 3)],
+        margin: (options & 8 != 0).then_some(0.5),
+    };
+    match Scene::from_bytes(file, "stl", &options) {
+        Ok(scene) => assert!(scene.voxels().next().is_some()),
+        Err(error) => {
+            let words = error.to_string();
+            assert!(words.chars().count() < 1_000, "{words}");
+            assert!(!words.chars().any(char::is_control), "{words:?}");
+        }
+    }
 }
 
 fn heights<E>(read: Result<Trace, E>) {

@@ -180,11 +180,11 @@ fn files_that_are_no_terrains_are_named() {
             "# Octomap OcTree file\n",
             ["complete OctoMap tree", ".ot"],
         ),
-        ("cloud.pcd", "# .PCD v0.7\n", ["PCD", "octomap_server"]),
+        ("cloud.pcd", "# .PCD v0.7\n", ["PCD", "--scene"]),
         (
             "mesh.ply",
             "ply\nformat ascii 1.0\n",
-            ["PLY mesh", "binvox"],
+            ["PLY mesh", "--scene"],
         ),
         ("photo.png", "\u{42}\u{4d}", ["a BMP picture", "magick"]),
         (
@@ -285,6 +285,86 @@ fn a_scan_is_surveyed_voxel_by_voxel_and_its_map_lies_where_it_does() {
         assert!(seen.contains_key(voxel), "{voxel:?}");
     }
     assert!(seen.keys().all(|voxel| voxel[0] <= 2));
+}
+
+/// A room of 2 m as the triangles of its six walls, the room's lower corner at 0.
+fn mesh_of_a_room() -> String {
+    let mut text = "solid room\n".to_string();
+    for axis in 0..3 {
+        for at in [0.0, 2.0] {
+            let corner = |u: f64, v: f64| {
+                let mut corner = [at; 3];
+                (corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (u, v);
+                format!("vertex {} {} {}\n", corner[0], corner[1], corner[2])
+            };
+            for [u, v] in [[2.0, 0.0], [0.0, 2.0]] {
+                let corners = [corner(0.0, 0.0), corner(u, v), corner(2.0, 2.0)].concat();
+                let facet = format!("outer loop\n{corners}endloop\nendfacet\n");
+                text += &format!("facet normal 0 0 0\n{facet}");
+            }
+        }
+    }
+    text + "endsolid room\n"
+}
+
+#[test]
+fn a_mesh_is_surveyed_from_inside_and_a_cloud_along_its_rays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("room.stl"), mesh_of_a_room()).unwrap();
+    let arguments = "--scene room.stl --voxel-size 0.2 --robots 1 --range 4 --json --out mesh";
+    let assert = survey(path, arguments).assert().success();
+    let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    assert_eq!(summary["complete"], true);
+    assert_eq!(summary["free_space"], "rest");
+    // The walls of a room of 9 voxels; their edges are seen or not.
+    let walls = summary["reachable_cells"].as_u64().unwrap();
+    assert!(
+        (6 * 9 * 9..=11 * 11 * 11 - 9 * 9 * 9).contains(&walls),
+        "{walls}"
+    );
+
+    // What is seen of the same room from its middle.
+    let walls = fs::read_to_string(path.join("mesh/map.ply")).unwrap();
+    let points: Vec<&str> = walls.lines().skip(8).collect();
+    let header = format!(
+        "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH {0}\nHEIGHT 1\n\
+         VIEWPOINT 1 1 1 1 0 0 0\nPOINTS {0}\nDATA ascii\n",
+        points.len()
+    );
+    fs::write(path.join("room.pcd"), header + &points.join("\n")).unwrap();
+    for (free, complete) in [("rest", true), ("rays", true)] {
+        let arguments = format!(
+            "--scene room.pcd --voxel-size 0.2 --free {free} --start 1.1,1.1,1.1 --robots 1 \
+             --range 4 --json --out {free}"
+        );
+        let assert = survey(path, &arguments).assert().success();
+        let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+        assert_eq!(summary["complete"], complete);
+        assert_eq!(summary["free_space"], free);
+    }
+    for (arguments, words) in [
+        ("--scene room.stl", ["--voxel-size 0.02", "2.0×2.0×2.0 m"]),
+        (
+            "--scene room.stl --voxel-size 0.2 --free rays",
+            ["--free rays", "a mesh"],
+        ),
+        (
+            "--scene room.pcd --voxel-size 0.001",
+            ["2002×2002×2002", "--voxel-size 0.008 or more"],
+        ),
+        (
+            "--scene mesh/map.ply --voxel-size 0.2 --free rays",
+            ["map.ply", "VIEWPOINT"],
+        ),
+        (
+            "--scene mesh/map.bt --margin 1",
+            ["--margin", "OctoMap tree"],
+        ),
+        ("--free rest", ["--free", "--scene"]),
+    ] {
+        assert_refused(path, arguments, &words);
+    }
 }
 
 #[test]

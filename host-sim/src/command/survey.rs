@@ -14,7 +14,7 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
-use host_sim::scene::{Frame, Scene};
+use host_sim::scene::{Frame, Free, Scene, SceneOptions};
 use host_sim::summary::Head;
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
@@ -43,15 +43,24 @@ pub(crate) struct Survey {
     /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
-    /// An OctoMap .bt or .ot file of up to 512×512×255 voxels, surveyed voxel by voxel as in
-    /// a town, instead of a terrain. What it leaves unknown stays unknown: robots neither
-    /// see nor fly there.
+    /// An OctoMap .bt or .ot tree, a PCD or PLY point cloud, or a PLY or STL mesh, of up to
+    /// 512×512×255 voxels, surveyed voxel by voxel as in a town, instead of a terrain. What it
+    /// leaves unknown stays unknown: robots neither see nor fly there.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["terrain", "size"])]
     scene: Option<PathBuf>,
-    /// Side of a voxel of the --scene in metres: a whole number of the file's. Default: its
-    /// own.
+    /// Side of a voxel of the --scene in metres: of a tree a whole number of its own, which is
+    /// the default.
     #[arg(long, value_name = "M", requires = "scene")]
     voxel_size: Option<f64>,
+    /// What of a point cloud is free: the rest of its bounding box, or what lies on the rays
+    /// from the VIEWPOINT of a PCD file to its points, which leave the rest unknown. Of a mesh
+    /// it is always the rest. Default: rest.
+    #[arg(long, value_enum, requires = "scene", hide_default_value = true)]
+    free: Option<Free>,
+    /// Free metres beside and above the bounding box of a cloud or a mesh, to fly about it.
+    /// Default: 0.
+    #[arg(long, value_name = "M", requires = "scene")]
+    margin: Option<f64>,
     /// Where all robots start among voxels: metres in the coordinates of the --scene, whole
     /// voxels in a town. Default: in the largest room, as far to the north-west as one can.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
@@ -105,7 +114,12 @@ impl Survey {
     pub(crate) fn run(self) -> Done {
         if let Some(path) = &self.scene {
             self.check_for_voxels()?;
-            let scene = Scene::read(path, self.voxel_size);
+            let options = SceneOptions {
+                voxel_size: self.voxel_size,
+                free: self.free,
+                margin: self.margin,
+            };
+            let scene = Scene::read(path, &options);
             let scene = scene.map_err(|error| format!("{}: {error}", path.display()))?;
             return self.run_in(&scene);
         }
@@ -372,6 +386,13 @@ fn print_voxels(summary: &VoxelSummary, out: &Path) {
     let metres = summary.robots.iter().filter_map(|robot| robot.metres);
     if let Some(most) = metres.reduce(f64::max) {
         println!("  longest way        {most:.1} m");
+    }
+    if let Some(free) = summary.free_space {
+        let what = match free {
+            Free::Rest => "taken for free where the file has nothing",
+            Free::Rays => "free along the rays from the viewpoint",
+        };
+        println!("  free space         {what}");
     }
     if summary.edge_cells > 0 {
         println!(

@@ -1,100 +1,66 @@
-//! Scenes out of files: OctoMap trees.
+//! Scenes out of files: OctoMap trees, point clouds and meshes, told apart by their content.
 
-use std::io;
 use std::path::Path;
 
 use planner_core::Extent;
 use planner_core::volume::{Content, Voxel};
-use thiserror::Error;
 
+use super::error::MOST_BYTES;
 use super::octree::{Cube, OcTree};
-use super::{Frame, LARGEST, LEVELS, Scene};
-use crate::bytes::{self, Unread};
-
-/// Most bytes of a file that is read.
-const MOST_BYTES: u64 = 256 << 20;
+use super::pcd::{from_pcd, is_pcd};
+use super::ply::{from_ply, is_ply};
+use super::stl::{from_stl, is_stl};
+use super::{Frame, Free, LARGEST, LEVELS, Scene, SceneError};
+use crate::bytes;
 
 /// How far from a whole number of the file's voxels a side may be, as a share of one.
 const SLACK: f64 = 1e-6;
 
-/// What is read.
-const READ: &str = "an OctoMap .bt or .ot tree";
-
-/// A scene that cannot be had from a file, said so that the reader can mend it.
-#[derive(Debug, Error)]
-#[allow(missing_docs)] // each variant's message is its documentation
-pub enum SceneError {
-    #[error("no such file; expected {READ}")]
-    Missing,
-    #[error("cannot be read: {0}; check that it is a file that you may read")]
-    Unreadable(#[from] io::Error),
-    #[error("is no file but a folder or a device; expected {READ}")]
-    NoFile,
-    #[error("has more than {} MiB; expected {READ} of fewer", MOST_BYTES >> 20)]
-    TooLong,
-    #[error("is of no format that is known here; expected {READ}")]
-    Unknown,
-    #[error(
-        "is not a complete OctoMap tree: {0}; expected {READ}: copy it again or export it again"
-    )]
-    BrokenTree(io::Error),
-    #[error("nothing in it is known; expected free and occupied voxels")]
-    Empty,
-    #[error(
-        "--voxel-size {asked}: the voxels of the file are {resolution} m wide; expected a whole \
-         number of these, such as {suggested}"
-    )]
-    VoxelSize {
-        asked: f64,
-        resolution: f64,
-        suggested: f64,
-    },
-    #[error(
-        "{width}×{height}×{levels} voxels of {voxel_size} m; expected at most \
-         {LARGEST}×{LARGEST}×{LEVELS}: give --voxel-size {suggested} or more"
-    )]
-    Size {
-        width: i64,
-        height: i64,
-        levels: i64,
-        voxel_size: f64,
-        suggested: f64,
-    },
-}
-
-impl From<Unread> for SceneError {
-    fn from(unread: Unread) -> Self {
-        match unread {
-            Unread::Missing => Self::Missing,
-            Unread::NoFile => Self::NoFile,
-            Unread::TooLong => Self::TooLong,
-            Unread::Io(error) => Self::Unreadable(error),
-        }
-    }
+/// How the voxels of a file are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SceneOptions {
+    /// Their side in metres; of a tree its own unless something else is said.
+    pub voxel_size: Option<f64>,
+    /// What of a cloud or a mesh is free; [`Free::Rest`] if nothing is said.
+    pub free: Option<Free>,
+    /// Free metres about the bounding box of a cloud or a mesh, but beneath it.
+    pub margin: Option<f64>,
 }
 
 impl Scene {
-    /// Reads a scene from a file, called like the file, with voxels of `voxel_size` metres,
-    /// or as small as the file has them.
+    /// Reads a scene from a file, called like the file.
     ///
     /// # Errors
     /// [`SceneError`] says what is wrong and what to do.
-    pub fn read(path: &Path, voxel_size: Option<f64>) -> Result<Self, SceneError> {
+    pub fn read(path: &Path, options: &SceneOptions) -> Result<Self, SceneError> {
         let bytes = bytes::read(path, MOST_BYTES)?;
+        let ending = path.extension().unwrap_or_default().to_string_lossy();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok(Self::from_bytes(&bytes, voxel_size)?.named(name))
+        Ok(Self::from_bytes(&bytes, &ending, options)?.named(name))
     }
 
-    /// A scene out of what a file holds.
+    /// A scene out of what a file holds; the `ending` of its name, without the dot, tells
+    /// what it is if its content does not.
     ///
     /// # Errors
     /// As [`read`](Self::read).
-    pub fn from_bytes(bytes: &[u8], voxel_size: Option<f64>) -> Result<Self, SceneError> {
-        if !OcTree::is_tree(bytes) {
-            return Err(SceneError::Unknown);
+    pub fn from_bytes(
+        bytes: &[u8],
+        ending: &str,
+        options: &SceneOptions,
+    ) -> Result<Self, SceneError> {
+        if OcTree::is_tree(bytes) {
+            check_for_tree(options)?;
+            let tree = OcTree::read(bytes).map_err(SceneError::BrokenTree)?;
+            return Self::of_tree(&tree, options.voxel_size);
         }
-        let tree = OcTree::read(bytes).map_err(SceneError::BrokenTree)?;
-        Self::of_tree(&tree, voxel_size)
+        let shape = match () {
+            () if is_pcd(bytes) => from_pcd(bytes)?,
+            () if is_ply(bytes) => from_ply(bytes)?,
+            () if is_stl(bytes, ending) => from_stl(bytes)?,
+            () => return Err(SceneError::Unknown),
+        };
+        shape.scene(options)
     }
 
     /// What a tree knows, and a rim of the unknown about it. A voxel of several of the
@@ -135,7 +101,7 @@ impl Scene {
     ///
     /// # Errors
     /// It would be too large.
-    fn within([low, high]: Bounds, voxel_size: f64) -> Result<Self, SceneError> {
+    pub(super) fn within([low, high]: Bounds, voxel_size: f64) -> Result<Self, SceneError> {
         let side =
             |axis: usize| i64::from(high[axis]) - i64::from(low[axis]) + 1 + 2 * i64::from(RIM);
         let [width, height, levels] = [0, 1, 2].map(side);
@@ -163,7 +129,7 @@ impl Scene {
 
     /// Adds to what is known of the cuboid between two corners, both included; something
     /// occupied stays.
-    fn add(&mut self, low: [i16; 3], high: [i16; 3], content: Content) {
+    pub(super) fn add(&mut self, low: [i16; 3], high: [i16; 3], content: Content) {
         for z in low[2]..=high[2] {
             for y in low[1]..=high[1] {
                 for x in low[0]..=high[0] {
@@ -175,6 +141,22 @@ impl Scene {
                 }
             }
         }
+    }
+}
+
+/// # Errors
+/// An option that a tree leaves no room for: it says itself what is free.
+fn check_for_tree(options: &SceneOptions) -> Result<(), SceneError> {
+    let given = [
+        ("--free", options.free.is_some()),
+        ("--margin", options.margin.is_some()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        None => Ok(()),
+        Some((option, _)) => Err(SceneError::DoesNotApply {
+            option,
+            what: "an OctoMap tree, which says itself what is free",
+        }),
     }
 }
 
@@ -274,7 +256,11 @@ mod tests {
         assert!(error(&wide, None).contains("3×603×3 voxels"));
         assert!(error(&wide, None).contains("--voxel-size 0.2"));
         assert!(Scene::of_tree(&wide, Some(0.2)).is_ok());
-        let error = Scene::from_bytes(b"ply\n", None).unwrap_err().to_string();
-        assert!(error.contains("an OctoMap .bt or .ot tree"), "{error}");
+        let options = SceneOptions::default();
+        let error = Scene::from_bytes(b"LASF", "las", &options).unwrap_err();
+        assert!(
+            error.to_string().contains("an OctoMap .bt or .ot tree"),
+            "{error}"
+        );
     }
 }

@@ -1,10 +1,16 @@
 //! Worlds of voxels: streets, undersides, rooms.
 
+mod error;
 mod file;
 mod look;
 mod marks;
+mod mesh;
 pub mod octree;
+mod pcd;
+mod ply;
+mod shape;
 mod space;
+mod stl;
 
 use planner_core::Extent;
 use planner_core::volume::{Content, Voxel};
@@ -12,10 +18,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
 
-pub use file::SceneError;
+pub use error::SceneError;
+pub use file::SceneOptions;
 pub use look::look;
 pub(crate) use look::visible;
 pub(crate) use marks::Marks;
+pub use shape::Free;
 
 /// A box of voxels. What a scan left unknown is neither free nor occupied: nothing flies
 /// or sees there.
@@ -25,6 +33,7 @@ pub struct Scene {
     extent: Extent,
     levels: u8,
     frame: Option<Frame>,
+    free: Option<Free>,
     contents: Vec<Content>,
 }
 
@@ -107,6 +116,7 @@ impl Scene {
             extent,
             levels,
             frame: None,
+            free: None,
             contents: voxels(extent, levels).map(content).collect(),
         }
     }
@@ -114,6 +124,11 @@ impl Scene {
     /// The same in the coordinates of a file.
     pub fn framed(self, frame: Option<Frame>) -> Self {
         Self { frame, ..self }
+    }
+
+    /// The same with what was taken for free.
+    pub fn freed(self, free: Option<Free>) -> Self {
+        Self { free, ..self }
     }
 
     /// The same by another name.
@@ -219,6 +234,11 @@ impl Scene {
     /// Its coordinates, where it comes from a file.
     pub fn frame(&self) -> Option<Frame> {
         self.frame
+    }
+
+    /// What was taken for free, if the file did not say that.
+    pub fn free(&self) -> Option<Free> {
+        self.free
     }
 
     /// What is at `voxel`; `None` outside.

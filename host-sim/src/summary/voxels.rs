@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::Head;
 use crate::record::voxels::VoxelTrace;
+use crate::scene::Free;
 
 /// What a survey of voxels came to; the keys are those of the others where they mean the
 /// same.
@@ -27,6 +28,8 @@ pub struct Summary {
     pub range: u8,
     /// Side of a voxel in metres, where the scene says so.
     pub voxel_size: Option<f64>,
+    /// What counts as free where the file says only what is occupied.
+    pub free_space: Option<Free>,
     /// How fast robots fly, in metres a second, if that was said.
     pub speed: Option<f64>,
     /// How long the run took at that speed.
@@ -91,6 +94,7 @@ impl Summary {
             planner: "voxel-survey",
             range: scenario.range,
             voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
+            free_space: trace.scene.free(),
             speed: None,
             seconds: None,
             edge_cells: trace.edge(),

@@ -10,6 +10,7 @@ pub(super) struct Foreign {
     pub(super) advice: &'static str,
 }
 
+const SCENE: &str = "survey it voxel by voxel: `--scene FILE --voxel-size M`, in metres";
 const GREYS: &str = "save it as a PNG of 8-bit greys, for example `magick IN -colorspace gray \
                      -depth 8 OUT.png`";
 const CLOUD: &str = "make an octree of it, for example with ROS's octomap_server and \
@@ -23,14 +24,14 @@ const PACKED: &str = "unpack it and give the file in it";
 
 /// What files begin with.
 const BEGINNINGS: [(&[u8], &str, &str); 23] = [
-    (b"# .PCD", "a PCD point cloud", CLOUD),
-    (b"VERSION .7", "a PCD point cloud", CLOUD),
-    (b"VERSION 0.7", "a PCD point cloud", CLOUD),
+    (b"# .PCD", "a PCD point cloud", SCENE),
+    (b"VERSION .7", "a PCD point cloud", SCENE),
+    (b"VERSION 0.7", "a PCD point cloud", SCENE),
     (b"LASF", "a LAS point cloud", CLOUD),
     (b"ASTM-E57", "an E57 point cloud", CLOUD),
-    (b"ply\n", "a PLY mesh or point cloud", MESH),
-    (b"ply\r", "a PLY mesh or point cloud", MESH),
-    (b"solid ", "an STL mesh", MESH),
+    (b"ply\n", "a PLY mesh or point cloud", SCENE),
+    (b"ply\r", "a PLY mesh or point cloud", SCENE),
+    (b"solid ", "an STL mesh", SCENE),
     (b"glTF", "a glTF mesh", MESH),
     (b"#VRML", "a VRML mesh", MESH),
     (b"#binvox", "a binvox volume", MESH),
@@ -54,11 +55,11 @@ const BEGINNINGS: [(&[u8], &str, &str); 23] = [
 
 /// Endings of what cannot be told by its beginning.
 const ENDINGS: [(&str, &str, &str); 12] = [
-    ("pcd", "a PCD point cloud", CLOUD),
+    ("pcd", "a PCD point cloud", SCENE),
     ("xyz", "a point cloud", CLOUD),
     ("laz", "a LAS point cloud", CLOUD),
     ("bag", "a ROS bag", CLOUD),
-    ("stl", "an STL mesh", MESH),
+    ("stl", "an STL mesh", SCENE),
     ("obj", "an OBJ mesh", MESH),
     ("dae", "a COLLADA mesh", MESH),
     ("hgt", "a raster of heights", RASTER),

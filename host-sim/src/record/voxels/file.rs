@@ -15,7 +15,7 @@ use super::VoxelTrace;
 use crate::record::{self, Deed, Format, Kind, Nothing, Objection, Order, TraceError, wrong};
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
-use crate::scene::{Frame, LARGEST, LEVELS, Marks, Scene, look, visible};
+use crate::scene::{Frame, Free, LARGEST, LEVELS, Marks, Scene, look, visible};
 
 /// Most steps without a record, all together.
 const MOST_EMPTY_STEPS: u32 = 10_000;
@@ -35,6 +35,8 @@ struct Levels {
     name: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     frame: Option<Frame>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    free: Option<Free>,
     levels: Vec<Vec<String>>,
 }
 
@@ -221,6 +223,7 @@ impl Levels {
         Self {
             name: scene.name().into(),
             frame: scene.frame(),
+            free: scene.free(),
             levels: (0..i16::from(scene.levels())).map(level).collect(),
         }
     }
@@ -260,7 +263,7 @@ impl Levels {
         }
         let extent = Extent::new(width as u16, height as u16);
         let scene = Scene::from_contents(&self.name, extent, levels.len() as u8, content);
-        Ok(scene.framed(self.frame))
+        Ok(scene.framed(self.frame).freed(self.free))
     }
 }
 

@@ -13,7 +13,7 @@ use egui::{Pos2, RawInput, Rect, vec2};
 
 use lab::App;
 use lab::platform::Stopwatch;
-use lab::watch::Verdict;
+use lab::playback::{Playback, Verdict};
 
 const CROWD: &str = "map=generate:rooms:256x256:1&robots=100&start=random";
 

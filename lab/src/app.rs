@@ -10,15 +10,19 @@ use crate::ground::{ALL_TICKS, Layers};
 use crate::maps;
 use crate::opened::Opened;
 use crate::platform::{Inbox, Stopwatch};
+use crate::playback::{Playback, Verdict};
 use crate::setup::Setup;
 use crate::survey::{SurveyScene, SurveySetup};
 use crate::view::{Camera, Deed, Tool, View};
-use crate::watch::{Verdict, Watch};
+use crate::watch::Watch;
 
 /// Time for ticks in a frame, in seconds: the rest of it is for drawing.
 const FRAME_BUDGET: f64 = 0.012;
 /// A frame after which time is not made up for, in seconds.
 const LONGEST_FRAME: f32 = 0.25;
+/// What a newcomer is told.
+const WELCOME: &str = "Click a robot to see what it knows and why it goes where it goes; \
+                       Space pauses, and Examples has more to start from.";
 /// Robots from which on ways are drawn only for the last ticks, unless asked for.
 const CROWD: u8 = 20;
 
@@ -49,6 +53,8 @@ pub struct App {
     pub(crate) path: String,
     pub(crate) sheet: Option<crate::panels::Sheet>,
     pub(crate) shows_world: bool,
+    /// The tick to run to without showing the ones before.
+    target: Option<u32>,
     due: f32,
     next_run: usize,
 }
@@ -61,8 +67,6 @@ pub struct Shown {
     pub setup: Setup,
     /// The run.
     pub watch: Watch,
-    /// The tick to run to without showing the ones before.
-    pub target: Option<u32>,
     pub(crate) views: [View; 2],
 }
 
@@ -109,6 +113,7 @@ impl App {
             path: String::new(),
             sheet: None,
             shows_world: false,
+            target: None,
             due: 0.0,
             next_run: 0,
         };
@@ -124,21 +129,34 @@ impl App {
 
     /// The lab with the scenario of an address.
     pub fn from_address(address: &str) -> Self {
-        if SurveySetup::is_meant(address) {
-            let mut app = Self::new(Setup::default());
-            match SurveySetup::from_address(address) {
-                Ok(setup) => app.fly(setup),
-                Err(error) => app.fail(error),
-            }
-            return app;
+        let mut app = Self::new(Setup::default());
+        if !address.trim_start_matches('#').is_empty() {
+            app.load(address);
         }
+        app
+    }
+
+    /// The lab as a newcomer finds it, with the scenario of an address if there is one.
+    pub fn welcome(address: &str) -> Self {
+        let mut app = Self::from_address(address);
+        if address.trim_start_matches('#').is_empty() {
+            app.say(Ok(WELCOME.into()));
+        }
+        app
+    }
+
+    /// Runs the scenario of an address; a wrong one changes nothing but the notice.
+    pub fn load(&mut self, address: &str) {
+        if SurveySetup::is_meant(address) {
+            return match SurveySetup::from_address(address) {
+                Ok(setup) => self.fly(setup),
+                Err(error) => self.fail(error),
+            };
+        }
+        self.rival = None;
         match Setup::from_address(address) {
-            Ok(setup) => Self::new(setup),
-            Err(error) => {
-                let mut app = Self::new(Setup::default());
-                app.fail(error);
-                app
-            }
+            Ok(setup) => self.playing |= self.set(setup),
+            Err(error) => self.fail(error),
         }
     }
 
@@ -150,18 +168,59 @@ impl App {
         }
     }
 
-    /// Starts a survey.
+    /// Starts a survey; one that cannot be flown changes nothing but the notice.
     pub fn fly(&mut self, setup: SurveySetup) {
+        self.fly_to(setup, None);
+    }
+
+    /// As [`fly`](Self::fly), and goes on from a step.
+    fn fly_to(&mut self, setup: SurveySetup, step: Option<u32>) {
         match SurveyScene::new(setup) {
-            Ok(scene) => self.watch(scene),
+            Ok(mut scene) => {
+                if let Some(old) = &self.survey {
+                    scene.look_as(old);
+                }
+                self.watch(scene);
+                self.target = step;
+            }
             Err(error) => self.fail(error),
         }
     }
 
     fn watch(&mut self, scene: SurveyScene) {
+        let drones = usize::from(scene.setup.robots);
+        self.selected = self.selected.filter(|&drone| drone < drones);
         self.survey = Some(scene);
         self.playing = true;
         self.notice = None;
+        self.target = None;
+        self.due = 0.0;
+    }
+
+    /// Shows the explorations on the grid again.
+    pub fn land(&mut self) {
+        self.survey = None;
+        self.target = None;
+        self.selected = None;
+    }
+
+    /// What is played: a survey, or one or two runs on a grid in step.
+    pub fn players(&self) -> Vec<&dyn Playback> {
+        match &self.survey {
+            Some(survey) => vec![survey],
+            None => self.runs.iter().map(|run| &run.watch as _).collect(),
+        }
+    }
+
+    fn players_mut(&mut self) -> Vec<&mut dyn Playback> {
+        match &mut self.survey {
+            Some(survey) => vec![survey],
+            None => self
+                .runs
+                .iter_mut()
+                .map(|run| &mut run.watch as _)
+                .collect(),
+        }
     }
 
     /// Starts over with this setup; one that cannot be run changes nothing but the
@@ -180,7 +239,7 @@ impl App {
         let mut runs = Vec::new();
         for setup in wanted.into_iter().flatten() {
             match setup.scenario().and_then(Watch::new) {
-                Ok(watch) => runs.push(self.shown(setup, watch, tick)),
+                Ok(watch) => runs.push(self.shown(setup, watch)),
                 Err(error) => {
                     self.fail(error);
                     return false;
@@ -200,17 +259,17 @@ impl App {
         self.runs = runs;
         self.survey = None;
         self.notice = None;
+        self.target = tick;
         self.due = 0.0;
         true
     }
 
-    fn shown(&mut self, setup: Setup, watch: Watch, target: Option<u32>) -> Shown {
+    fn shown(&mut self, setup: Setup, watch: Watch) -> Shown {
         self.next_run += 1;
         Shown {
             id: self.next_run,
             setup,
             watch,
-            target,
             views: Default::default(),
         }
     }
@@ -245,11 +304,10 @@ impl App {
         let in_metres = trace.scenario.motion.is_some();
         let setup = Setup::of(&trace.scenario);
         let watch = Watch::replay(trace);
-        self.runs = vec![self.shown(setup.clone(), watch, None)];
+        self.runs = vec![self.shown(setup.clone(), watch)];
         self.setup = setup;
         self.rival = None;
-        self.survey = None;
-        self.selected = None;
+        self.land();
         self.camera = Camera::default();
         self.notice = in_metres.then(|| Notice {
             text: "These robots moved in metres; what is run from here makes a cell a tick.".into(),
@@ -289,27 +347,19 @@ impl App {
         }
         let clock = Stopwatch::start();
         let has_time = || clock.seconds() < FRAME_BUDGET;
-        let seconds = seconds.min(LONGEST_FRAME);
-        if let Some(survey) = &mut self.survey {
-            self.playing = self.playing && survey.advance(seconds, self.speed, has_time);
-            return;
-        }
-        let mut waits = false;
-        for run in &mut self.runs {
-            while let Some(target) = run.target {
-                if run.watch.shown() >= target || !run.watch.tick() {
-                    run.target = None;
-                } else if !has_time() {
-                    break;
-                }
+        while let Some(target) = self.target {
+            if self.shown_tick() >= target || !self.tick() {
+                self.target = None;
+            } else if !has_time() {
+                break;
             }
-            waits |= run.target.is_some();
         }
-        if self.playing && !waits {
-            self.due += self.speed * seconds;
+        if self.playing && self.target.is_none() {
+            self.due += self.speed * seconds.min(LONGEST_FRAME);
             while self.due >= 1.0 {
                 self.due -= 1.0;
                 if !self.tick() {
+                    self.due = 0.0;
                     self.playing = false;
                     break;
                 }
@@ -324,76 +374,70 @@ impl App {
         }
     }
 
-    /// One tick of every run; false if there is none any more.
+    /// One tick of all that is played; false if there is none any more.
     pub fn tick(&mut self) -> bool {
-        if let Some(survey) = &mut self.survey {
-            return survey.step();
-        }
-        let mut went_on = false;
-        let shown = self.shown_tick();
-        for run in &mut self.runs {
-            if run.watch.shown() <= shown {
-                went_on |= run.watch.tick();
+        let (mut went_on, shown) = (false, self.shown_tick());
+        for player in self.players_mut() {
+            if player.shown() <= shown {
+                went_on |= player.tick();
             }
         }
         went_on
     }
 
-    /// The latest tick that is shown of any run.
+    /// The latest tick that is shown.
     pub fn shown_tick(&self) -> u32 {
-        if let Some(survey) = &self.survey {
-            return survey.shown() as u32;
-        }
-        self.runs
-            .iter()
-            .map(|run| run.watch.shown())
-            .max()
-            .unwrap_or(0)
+        let shown = self.players().into_iter().map(|player| player.shown());
+        shown.max().unwrap_or(0)
     }
 
-    /// The last tick that any run has done.
+    /// The last tick that was done.
     pub fn last_tick(&self) -> u32 {
-        if let Some(survey) = &self.survey {
-            return survey.steps() as u32;
-        }
-        self.runs
-            .iter()
-            .map(|run| run.watch.ticks())
-            .max()
-            .unwrap_or(0)
+        let ticks = self.players().into_iter().map(|player| player.ticks());
+        ticks.max().unwrap_or(0)
     }
 
     /// Shows the state after so many ticks.
     pub fn show(&mut self, tick: u32) {
-        if let Some(survey) = &mut self.survey {
-            return survey.show_step(tick as usize);
-        }
-        for run in &mut self.runs {
-            run.watch.show(tick);
+        for player in self.players_mut() {
+            player.show(tick);
         }
     }
 
     /// Plays or pauses; at the end, plays from the start.
     pub fn play_or_pause(&mut self) {
         self.playing = !self.playing;
-        let is_over = match &self.survey {
-            Some(survey) => survey.is_over(),
-            None => self
-                .runs
-                .iter()
-                .all(|run| run.watch.verdict() != Verdict::Running),
-        };
+        let is_over = |player: &dyn Playback| player.verdict() != Verdict::Running;
+        let is_over = self.players().into_iter().all(is_over);
         if self.playing && is_over && self.shown_tick() == self.last_tick() {
             self.show(0);
         }
     }
 
+    /// Begins anew, or shows a trace that was opened from its start.
+    pub fn restart(&mut self) {
+        match self.players().into_iter().any(|player| player.is_replay()) {
+            true => self.show(0),
+            false => self.run_again(),
+        }
+        self.playing = true;
+    }
+
+    /// Runs what is set, from its first tick.
+    pub fn run_again(&mut self) {
+        match &self.survey {
+            Some(survey) => self.fly(survey.setup.clone()),
+            None => {
+                self.set(self.setup.clone());
+            }
+        }
+    }
+
     /// Whether something moves without the user.
     pub fn is_busy(&self) -> bool {
-        let waits = |run: &Shown| {
-            run.target.is_some() || run.watch.state().is_none() && run.watch.differs().is_none()
-        };
-        self.playing || self.survey.is_none() && self.runs.iter().any(waits)
+        let waits = |run: &Shown| run.watch.state().is_none() && run.watch.differs().is_none();
+        let waits = self.survey.is_none() && self.runs.iter().any(waits);
+        self.playing || self.target.is_some() || waits
     }
 
     /// Does what the pointer did in a view.
@@ -465,74 +509,72 @@ impl App {
 
     /// From the shown tick on, the robot is dead.
     pub fn kill(&mut self, robot: usize) {
-        let tick = self.shown_tick();
         let Ok(id) = u8::try_from(robot) else { return };
-        let mut setup = self.setup.clone();
-        let deaths = &mut setup.conditions.faults.deaths;
-        deaths.retain(|death| death.robot.0 != id);
-        deaths.push(Event {
-            robot: RobotId(id),
-            tick,
+        self.befall(|faults, tick| {
+            let deaths = &mut faults.deaths;
+            deaths.retain(|death| death.robot.0 != id);
+            deaths.push(Event {
+                robot: RobotId(id),
+                tick,
+            });
         });
-        self.set_at(setup, Some(tick));
+    }
+
+    /// Changes the faults from the shown tick on, whatever the world is, and goes on from
+    /// there; says whether it does.
+    fn befall(&mut self, change: impl FnOnce(&mut Faults, u32)) -> bool {
+        let tick = self.shown_tick();
+        if let Some(survey) = &self.survey {
+            let (mut setup, playing) = (survey.setup.clone(), self.playing);
+            change(&mut setup.conditions.faults, tick);
+            self.fly_to(setup, Some(tick));
+            self.playing = playing;
+            return self.target.is_some();
+        }
+        let mut setup = self.setup.clone();
+        change(&mut setup.conditions.faults, tick);
+        self.set_at(setup, Some(tick))
     }
 
     /// From the shown tick on, the cell is shut; if it is shut, open again.
     fn shut(&mut self, cell: Cell) {
-        let tick = self.shown_tick();
-        let mut setup = self.setup.clone();
-        let spans = &mut setup.conditions.faults.shut;
-        let holds = |of: &CellSpan| of.cell == cell && (of.from..of.until).contains(&tick);
-        match spans.iter().position(holds) {
-            Some(index) if spans[index].from == tick => drop(spans.remove(index)),
-            Some(index) => spans[index].until = tick,
-            None => spans.push(CellSpan {
-                cell,
-                from: tick,
-                until: u32::MAX,
-            }),
-        }
-        self.set_at(setup, Some(tick));
+        self.befall(|faults, tick| {
+            let spans = &mut faults.shut;
+            let holds = |of: &CellSpan| of.cell == cell && (of.from..of.until).contains(&tick);
+            match spans.iter().position(holds) {
+                Some(index) if spans[index].from == tick => drop(spans.remove(index)),
+                Some(index) => spans[index].until = tick,
+                None => spans.push(CellSpan {
+                    cell,
+                    from: tick,
+                    until: u32::MAX,
+                }),
+            }
+        });
     }
 
     /// From the shown tick on, the robot, or every one, goes on after its stop.
     pub fn go_on(&mut self, robot: Option<usize>) {
-        let tick = self.shown_tick();
-        let mut setup = self.setup.clone();
+        let robots = match &self.survey {
+            Some(survey) => survey.setup.robots,
+            None => self.setup.robots,
+        };
         let is_meant = |id: u8| robot.is_none_or(|robot| usize::from(id) == robot);
-        let resumes = &mut setup.conditions.faults.resumes;
-        resumes.retain(|of| of.tick < tick || !is_meant(of.robot.0));
-        resumes.extend(
-            (0..setup.robots)
-                .filter(|&id| is_meant(id))
-                .map(|id| Event {
-                    robot: RobotId(id),
-                    tick,
-                }),
-        );
-        self.playing |= self.set_at(setup, Some(tick));
+        let goes_on = self.befall(|faults, tick| {
+            let resumes = &mut faults.resumes;
+            resumes.retain(|of| of.tick < tick || !is_meant(of.robot.0));
+            let meant = (0..robots).filter(|&id| is_meant(id)).map(RobotId);
+            resumes.extend(meant.map(|robot| Event { robot, tick }));
+        });
+        self.playing |= goes_on;
     }
 
     /// Reads what the page around the lab should know.
     pub fn report(&self) -> Report {
         let error = self.notice.as_ref().filter(|notice| notice.is_error);
         let error = error.map_or_else(String::new, |notice| notice.text.clone());
-        if let Some(survey) = &self.survey {
-            return Report {
-                state: match (survey.is_over(), survey.is_complete()) {
-                    (true, true) => "complete",
-                    (true, false) => "incomplete",
-                    (false, _) if self.playing => "running",
-                    (false, _) => "paused",
-                },
-                digest: survey.digest().unwrap_or_default().into(),
-                ticks: survey.steps() as u32,
-                map: survey.name().into(),
-                error,
-            };
-        }
-        let first = self.runs.first();
-        let verdicts: Vec<_> = self.runs.iter().map(|run| run.watch.verdict()).collect();
+        let players = self.players();
+        let verdicts: Vec<_> = players.iter().map(|player| player.verdict()).collect();
         let state = match () {
             () if verdicts.contains(&Verdict::Running) => match self.playing {
                 true => "running",
@@ -541,11 +583,12 @@ impl App {
             () if verdicts.contains(&Verdict::Incomplete) => "incomplete",
             () => "complete",
         };
+        let first = players.first();
         Report {
             state,
-            digest: first.and_then(|run| run.watch.digest()).unwrap_or_default(),
-            ticks: first.map_or(0, |run| run.watch.ticks()),
-            map: first.map_or_else(String::new, |run| run.watch.scenario().world.name().into()),
+            digest: first.and_then(|first| first.digest()).unwrap_or_default(),
+            ticks: first.map_or(0, |first| first.ticks()),
+            map: first.map_or_else(String::new, |first| first.name().into()),
             error,
         }
     }

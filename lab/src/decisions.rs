@@ -90,8 +90,8 @@ pub fn name(direction: Direction) -> &'static str {
     }
 }
 
-/// The record's reason to stop in words.
-fn stop(reason: Reason) -> &'static str {
+/// A record's reason to stop, in words.
+pub(crate) fn stop(reason: Reason) -> &'static str {
     match reason {
         Reason::Complete => "stops: complete",
         Reason::Enclosed => "stops: complete, the rest lies behind walls",
@@ -111,6 +111,7 @@ fn stop(reason: Reason) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::playback::Playback;
     use crate::setup::Setup;
 
     #[test]

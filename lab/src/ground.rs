@@ -8,6 +8,7 @@ use planner_core::tile::TileIndex;
 use planner_core::{Cell, Direction, Extent};
 
 use crate::colors::{Colors, mix};
+use crate::playback::Playback;
 use crate::watch::Watch;
 
 /// What a view shows.

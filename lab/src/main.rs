@@ -19,7 +19,10 @@ mod window {
 
     pub(crate) fn main() -> ExitCode {
         let arguments = Arguments::parse();
-        let mut app = App::from_address(&arguments.scenario);
+        let mut app = match arguments.file {
+            None => App::welcome(&arguments.scenario),
+            Some(_) => App::from_address(&arguments.scenario),
+        };
         if let Some(file) = &arguments.file {
             match std::fs::read(file) {
                 Ok(bytes) => app.open(file, &bytes),

@@ -6,20 +6,25 @@ mod heights;
 mod setup;
 mod voxels;
 
-use egui::{Sense, Shape, Stroke, Ui};
+use egui::{Pos2, Sense, Shape, Stroke, Ui};
 use host_sim::draw::write_png;
 use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
+use planner_core::Point;
 
 use crate::colors::{Colors, mix};
-use crate::view::lines;
+use crate::playback::{Export, Playback, Verdict};
+use crate::view::{Deed, Tool, lines};
 use eye::{Eye, Turn};
 use flight::Flight;
 use heights::Heights;
 use voxels::Voxels;
 
-pub use flight::Layers;
+pub use flight::{Drone, Layers};
 pub use setup::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
+
+/// How near to a drone a click means it, in points.
+const NEAR: f32 = 14.0;
 
 /// A survey on the screen.
 pub struct SurveyScene {
@@ -36,7 +41,6 @@ pub struct SurveyScene {
     digest: Option<String>,
     /// Whose state is drawn: that after so many steps.
     shown: usize,
-    due: f32,
     turn: Turn,
 }
 
@@ -90,7 +94,6 @@ impl SurveyScene {
             is_over: false,
             digest: None,
             shown: 0,
-            due: 0.0,
             turn: Turn {
                 about: 0.7,
                 down: 0.75,
@@ -99,30 +102,9 @@ impl SurveyScene {
         }
     }
 
-    /// Lets time go by; false if there is nothing more to show.
-    pub fn advance(&mut self, seconds: f32, speed: f32, has_time: impl Fn() -> bool) -> bool {
-        self.due += speed * seconds;
-        while self.due >= 1.0 {
-            self.due -= 1.0;
-            if !self.step() {
-                self.due = 0.0;
-                return false;
-            }
-            if !has_time() {
-                self.due = 0.0;
-            }
-        }
-        true
-    }
-
-    /// Shows the next step, and flies it if it was not flown yet; false if there is none.
-    pub fn step(&mut self) -> bool {
-        if self.shown == self.steps() && !self.is_over {
-            self.run_on();
-        }
-        let goes_on = self.shown < self.steps();
-        self.shown += usize::from(goes_on);
-        goes_on
+    /// Shows as much, from the same side, as another does.
+    pub fn look_as(&mut self, other: &Self) {
+        (self.layers, self.turn) = (other.layers, other.turn);
     }
 
     fn run_on(&mut self) {
@@ -132,44 +114,9 @@ impl SurveyScene {
         }
     }
 
-    /// Whether every drone has stopped, or time is up.
-    pub fn is_over(&self) -> bool {
-        self.is_over
-    }
-
-    /// Whether it is a trace that was opened.
-    pub fn is_replay(&self) -> bool {
-        self.is_replay
-    }
-
     /// Whether the setup gives the same survey, as it may not with a trace that was opened.
     pub fn is_repeatable(&self) -> bool {
         self.is_repeatable
-    }
-
-    /// Whether everything was seen and every drone has stopped.
-    pub fn is_complete(&self) -> bool {
-        self.is_over && self.flight.is_complete()
-    }
-
-    /// Steps done.
-    pub fn steps(&self) -> usize {
-        self.flight.seen().len() - 1
-    }
-
-    /// The step that is shown: so many are done.
-    pub fn shown(&self) -> usize {
-        self.shown
-    }
-
-    /// Shows the state after so many steps.
-    pub fn show_step(&mut self, step: usize) {
-        self.shown = step.min(self.steps());
-    }
-
-    /// The name of the place.
-    pub fn name(&self) -> &str {
-        self.flight.name()
     }
 
     /// Levels of voxels, if it is made of them.
@@ -189,40 +136,15 @@ impl SurveyScene {
         self.flight.violations()
     }
 
-    /// The digest of the trace, when the survey is over.
-    pub fn digest(&self) -> Option<&str> {
-        self.digest.as_deref()
+    /// What a drone does at the shown step, row by row, and whether it is alive and whether
+    /// it has stopped.
+    pub fn drone(&self, drone: usize) -> Drone {
+        self.flight.drone(drone, self.shown())
     }
 
-    /// A picture of the shown step, as PNG.
-    ///
-    /// # Errors
-    /// Those of the encoder.
-    pub fn png(&self) -> Result<Vec<u8>, String> {
-        let mut png = Vec::new();
-        let picture = self.flight.picture(self.shown as u32);
-        write_png(&picture, &mut png).map_err(|error| error.to_string())?;
-        Ok(png)
-    }
-
-    /// The survey up to its last step as an animation.
-    ///
-    /// # Errors
-    /// Those of the encoder.
-    pub fn gif(&self) -> Result<Vec<u8>, String> {
-        self.flight.animation()
-    }
-
-    /// The trace as host-sim writes it.
-    ///
-    /// # Errors
-    /// None in memory.
-    pub fn file(&self) -> Result<Vec<u8>, String> {
-        self.flight.file()
-    }
-
-    /// Draws the scene over the room that is left; dragging turns it, the wheel zooms.
-    pub fn show(&mut self, ui: &mut Ui) {
+    /// Draws the scene over the room that is left; dragging turns it, the wheel zooms. Says
+    /// what a click did.
+    pub fn view(&mut self, ui: &mut Ui, selected: Option<usize>, tool: Tool) -> Option<Deed> {
         let colors = Colors::of(ui);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let drag = response.drag_delta();
@@ -240,8 +162,23 @@ impl SurveyScene {
         if self.layers.ceiling && self.levels().is_none() {
             painter.add(self.ceiling(&eye, &colors));
         }
-        painter.extend(self.drones(&eye, &colors));
+        painter.extend(self.drones(&eye, &colors, selected));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "terrain"));
+        let at = response.clicked().then(|| response.interact_pointer_pos());
+        let drone = self.drone_at(&eye, at.flatten()?);
+        match tool {
+            Tool::Kill => drone.map(Deed::Killed),
+            _ => Some(Deed::Selected(drone)),
+        }
+    }
+
+    /// The drone that is drawn nearest to a point of the screen, if any is near.
+    fn drone_at(&self, eye: &Eye, at: Pos2) -> Option<usize> {
+        let ways = self.flight.ways(self.shown);
+        let places = ways.iter().filter_map(|way| way.last()).enumerate();
+        let away = |&(_, place): &(usize, &Point)| eye.over(*place).distance(at);
+        let nearest = places.min_by(|a, b| away(a).total_cmp(&away(b)))?;
+        (away(&nearest) <= NEAR).then_some(nearest.0)
     }
 
     fn ceiling(&self, eye: &Eye, colors: &Colors) -> Shape {
@@ -253,11 +190,15 @@ impl SurveyScene {
         Shape::closed_line(corners, Stroke::new(1.5, colors.lost))
     }
 
-    fn drones(&self, eye: &Eye, colors: &Colors) -> Vec<Shape> {
+    fn drones(&self, eye: &Eye, colors: &Colors, selected: Option<usize>) -> Vec<Shape> {
         let ways = self.flight.ways(self.shown);
         let mut shapes = Vec::new();
+        let color = |robot| match selected {
+            Some(selected) if selected != robot => mix(colors.free, colors.robot(robot), 0.4),
+            _ => colors.robot(robot),
+        };
         for (robot, way) in ways.iter().enumerate() {
-            let stroke = Stroke::new(1.5, colors.robot(robot));
+            let stroke = Stroke::new(1.5, color(robot));
             shapes.extend(lines(way.iter().map(|&at| eye.over(at)), stroke));
         }
         for (robot, way) in ways.iter().enumerate() {
@@ -267,9 +208,75 @@ impl SurveyScene {
             let plumb = Stroke::new(1.0, mix(colors.free, colors.ink, 0.6));
             shapes.extend(Shape::dashed_line(&[middle, foot], plumb, 3.0, 3.0));
             shapes.push(Shape::circle_filled(middle, 6.0, colors.ink));
-            shapes.push(Shape::circle_filled(middle, 5.0, colors.robot(robot)));
+            shapes.push(Shape::circle_filled(middle, 5.0, color(robot)));
         }
         shapes
+    }
+}
+
+impl Playback for SurveyScene {
+    fn name(&self) -> &str {
+        self.flight.name()
+    }
+
+    fn tick(&mut self) -> bool {
+        if self.shown() == self.ticks() && !self.is_over {
+            self.run_on();
+        }
+        let goes_on = self.shown() < self.ticks();
+        self.shown += usize::from(goes_on);
+        goes_on
+    }
+
+    fn shown(&self) -> u32 {
+        self.shown as u32
+    }
+
+    fn ticks(&self) -> u32 {
+        self.flight.seen().len() as u32 - 1
+    }
+
+    fn show(&mut self, tick: u32) {
+        self.shown = tick.min(self.ticks()) as usize;
+    }
+
+    fn seen_percent(&self) -> f64 {
+        self.curve().nth(self.shown).unwrap_or(0.0)
+    }
+
+    fn verdict(&self) -> Verdict {
+        match (self.is_over, self.flight.is_complete()) {
+            (false, _) => Verdict::Running,
+            (true, true) => Verdict::Complete,
+            (true, false) => Verdict::Incomplete,
+        }
+    }
+
+    fn is_replay(&self) -> bool {
+        self.is_replay
+    }
+
+    fn digest(&self) -> Option<String> {
+        self.digest.clone()
+    }
+
+    fn export(&self, what: Export) -> Result<(&'static str, Vec<u8>), String> {
+        match what {
+            Export::Picture => {
+                let mut png = Vec::new();
+                let picture = self.flight.picture(self.shown());
+                write_png(&picture, &mut png).map_err(|error| error.to_string())?;
+                Ok((".png", png))
+            }
+            Export::Animation => self.flight.animation().map(|gif| (".gif", gif)),
+            Export::Trace => self.flight.file().map(|csv| ("-trace.csv", csv)),
+            Export::Map => {
+                let mut octree = Vec::new();
+                let written = self.flight.octree(self.shown()).write(&mut octree);
+                written.map_err(|error| error.to_string())?;
+                Ok((".bt", octree))
+            }
+        }
     }
 }
 
@@ -283,7 +290,7 @@ mod tests {
 
     fn flown(setup: SurveySetup) -> SurveyScene {
         let mut scene = SurveyScene::new(setup).unwrap();
-        while scene.step() {}
+        while scene.tick() {}
         scene
     }
 
@@ -309,9 +316,9 @@ mod tests {
                     heights::run(&terrain, &setup.scenario()).unwrap().digest()
                 }
             };
-            assert_eq!(scene.digest(), Some(&*digest));
+            assert_eq!(scene.digest(), Some(digest));
             assert_eq!(scene.curve().last(), Some(100.0));
-            assert!(scene.is_complete());
+            assert_eq!(scene.verdict(), Verdict::Complete);
         }
     }
 
@@ -320,14 +327,15 @@ mod tests {
         for setup in [unusual(), town()] {
             let mut scene = flown(setup.clone());
             let mut ahead = SurveyScene::new(setup).unwrap();
-            for step in 0..scene.steps() {
-                scene.show_step(step);
+            for step in 0..scene.ticks() {
+                scene.show(step);
                 assert_eq!(ahead.shown(), step);
                 assert_eq!(seen(&scene), seen(&ahead));
-                assert_eq!(scene.flight.ways(step), ahead.flight.ways(step));
-                assert!(ahead.step());
+                let steps = step as usize;
+                assert_eq!(scene.flight.ways(steps), ahead.flight.ways(steps));
+                assert!(ahead.tick());
             }
-            assert!(!ahead.step());
+            assert!(!ahead.tick());
         }
     }
 
@@ -335,24 +343,25 @@ mod tests {
     fn a_saved_trace_shows_what_was_flown() {
         for setup in [unusual(), town()] {
             let flown = flown(setup.clone());
-            let file = flown.file().unwrap();
+            let (_, file) = flown.export(Export::Trace).unwrap();
             let mut replay = match setup.terrain {
                 TerrainSource::Town(_) => {
                     SurveyScene::replay_voxels(VoxelTrace::read(&*file).unwrap())
                 }
                 _ => SurveyScene::replay(Trace::read(&*file).unwrap()),
             };
-            assert_eq!((replay.shown(), replay.steps()), (0, flown.steps()));
+            assert_eq!((replay.shown(), replay.ticks()), (0, flown.ticks()));
             assert_eq!(replay.setup, setup);
-            assert!(replay.is_replay() && replay.is_repeatable() && replay.is_complete());
+            assert!(replay.is_replay() && replay.is_repeatable());
+            assert_eq!(replay.verdict(), Verdict::Complete);
             assert_eq!(replay.digest(), flown.digest());
             assert_eq!(replay.violations(), flown.violations());
             assert!(replay.curve().eq(flown.curve()));
-            while replay.step() {}
-            assert_eq!(replay.shown(), flown.steps());
-            let last = flown.steps();
+            while replay.tick() {}
+            assert_eq!(replay.shown(), flown.ticks());
+            let last = flown.ticks() as usize;
             assert_eq!(replay.flight.ways(last), flown.flight.ways(last));
-            assert_eq!(replay.file().unwrap(), file);
+            assert_eq!(replay.export(Export::Trace).unwrap().1, file);
         }
     }
 }

@@ -13,6 +13,7 @@ use planner_core::{Cell, Extent, RobotId};
 
 use crate::colors::{Colors, mix};
 use crate::ground::{self, Layers, Subject};
+use crate::playback::Playback;
 use crate::watch::{Obstruction, Watch};
 
 /// More messages than this are drawn only for a selected robot.

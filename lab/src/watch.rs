@@ -13,6 +13,9 @@ use host_sim::sensor::Sensor;
 use host_sim::world::Reachable;
 use planner_core::Cell;
 
+use crate::export;
+use crate::playback::{Export, Playback, Verdict};
+
 /// What nobody has seen.
 pub const NEVER: u32 = u32::MAX;
 
@@ -100,17 +103,6 @@ impl Obstruction {
     }
 }
 
-/// How a run stands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// There are ticks to come.
-    Running,
-    /// Everything that can be reached was seen, and all robots have stopped.
-    Complete,
-    /// The run is over, and something was left.
-    Incomplete,
-}
-
 impl Watch {
     /// A scenario before its first tick.
     ///
@@ -157,29 +149,6 @@ impl Watch {
         }
     }
 
-    /// Shows the next tick, and runs it if it was not run yet; false if there is none.
-    pub fn tick(&mut self) -> bool {
-        if self.shown < self.ticks() {
-            self.shown += 1;
-            return true;
-        }
-        let Source::Running(running) = &mut self.source else {
-            return false;
-        };
-        let begin = running.records().len();
-        if running.tick() {
-            let news = &running.records()[begin..];
-            self.history.note(news, &mut self.senses, &self.reachable);
-            // A tick in which nobody lives has no record.
-            self.history.fill(running.progress().ticks);
-            self.shown = running.progress().ticks;
-        }
-        if running.is_over() {
-            self.end();
-        }
-        true
-    }
-
     fn end(&mut self) {
         let Source::Running(running) = &self.source else {
             return;
@@ -208,26 +177,6 @@ impl Watch {
     /// What is run.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
-    }
-
-    /// Number of ticks done, or in the trace.
-    pub fn ticks(&self) -> u32 {
-        self.history.series.len() as u32
-    }
-
-    /// The tick that is shown: so many are done.
-    pub fn shown(&self) -> u32 {
-        self.shown
-    }
-
-    /// Shows the state after `tick` ticks.
-    pub fn show(&mut self, tick: u32) {
-        self.shown = tick.min(self.ticks());
-    }
-
-    /// Whether the ticks are those of a trace that was opened.
-    pub fn is_replay(&self) -> bool {
-        matches!(self.source, Source::Opened(_))
     }
 
     /// The first tick in which the planners of this program decide otherwise than
@@ -375,8 +324,67 @@ impl Watch {
         done.map_or(0, |tick| self.history.series[tick as usize].seen)
     }
 
-    /// How the run stands at its last tick.
-    pub fn verdict(&self) -> Verdict {
+    /// What happened, when it is over.
+    pub fn outcome(&self) -> Option<&Outcome> {
+        match &self.source {
+            Source::Ended(ended) => Some(&ended.outcome),
+            Source::Running(_) | Source::Opened(_) => None,
+        }
+    }
+
+    /// The trace up to the last tick done.
+    pub fn trace(&self) -> Trace {
+        Trace {
+            scenario: self.scenario.clone(),
+            records: self.all_records().to_vec(),
+        }
+    }
+}
+
+impl Playback for Watch {
+    fn name(&self) -> &str {
+        self.scenario.world.name()
+    }
+
+    fn tick(&mut self) -> bool {
+        if self.shown < self.ticks() {
+            self.shown += 1;
+            return true;
+        }
+        let Source::Running(running) = &mut self.source else {
+            return false;
+        };
+        let begin = running.records().len();
+        if running.tick() {
+            let news = &running.records()[begin..];
+            self.history.note(news, &mut self.senses, &self.reachable);
+            // A tick in which nobody lives has no record.
+            self.history.fill(running.progress().ticks);
+            self.shown = running.progress().ticks;
+        }
+        if running.is_over() {
+            self.end();
+        }
+        true
+    }
+
+    fn ticks(&self) -> u32 {
+        self.history.series.len() as u32
+    }
+
+    fn shown(&self) -> u32 {
+        self.shown
+    }
+
+    fn show(&mut self, tick: u32) {
+        self.shown = tick.min(self.ticks());
+    }
+
+    fn is_replay(&self) -> bool {
+        matches!(self.source, Source::Opened(_))
+    }
+
+    fn verdict(&self) -> Verdict {
         let seen = self.history.seen_cells == self.reachable.count();
         let complete = match &self.source {
             Source::Running(_) => return Verdict::Running,
@@ -390,16 +398,7 @@ impl Watch {
         }
     }
 
-    /// What happened, when it is over.
-    pub fn outcome(&self) -> Option<&Outcome> {
-        match &self.source {
-            Source::Ended(ended) => Some(&ended.outcome),
-            Source::Running(_) | Source::Opened(_) => None,
-        }
-    }
-
-    /// The digest of the trace, when the run is over.
-    pub fn digest(&self) -> Option<String> {
+    fn digest(&self) -> Option<String> {
         match &self.source {
             Source::Running(_) => None,
             Source::Ended(ended) => Some(ended.digest.clone()),
@@ -407,11 +406,17 @@ impl Watch {
         }
     }
 
-    /// The trace up to the last tick done.
-    pub fn trace(&self) -> Trace {
-        Trace {
-            scenario: self.scenario.clone(),
-            records: self.all_records().to_vec(),
+    fn seen_percent(&self) -> f64 {
+        let all = self.reachable.count().max(1);
+        100.0 * f64::from(self.seen_cells()) / f64::from(all)
+    }
+
+    fn export(&self, what: Export) -> Result<(&'static str, Vec<u8>), String> {
+        match what {
+            Export::Picture => export::png(self).map(|png| (".png", png)),
+            Export::Animation => export::gif(&self.trace()).map(|gif| (".gif", gif)),
+            Export::Trace => export::trace(&self.trace()).map(|trace| ("-trace.csv", trace)),
+            Export::Map => Ok((".txt", self.scenario.world.to_text().into_bytes())),
         }
     }
 }

@@ -41,7 +41,7 @@ fn start() -> Result<(), JsValue> {
 
     spawn_local(async move {
         let page = Page {
-            app: App::from_address(&decoded(&address)),
+            app: App::welcome(&decoded(&address)),
             entered,
             body,
             location,

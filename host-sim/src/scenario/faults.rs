@@ -67,7 +67,7 @@ impl Faults {
     }
 
     /// Whether `robot` lives in `tick`. Of what befalls it in one tick, death comes first.
-    pub(crate) fn is_alive(&self, robot: RobotId, tick: u32) -> bool {
+    pub fn is_alive(&self, robot: RobotId, tick: u32) -> bool {
         let of = |events: &[Event], until: u32| -> Option<u32> {
             let befallen = events
                 .iter()

@@ -1,12 +1,20 @@
 use planner_core::Direction;
 
 use super::*;
+use crate::playback::Export;
 use crate::watch::Obstruction;
 
 fn app() -> App {
     let mut app = App::from_address("map=generate:rooms:24x24:2&robots=2");
     app.playing = false;
     app
+}
+
+/// Lets it run to the tick that it was sent to.
+fn arrive(app: &mut App) {
+    while app.target.is_some() {
+        app.advance(0.0);
+    }
 }
 
 fn finish(app: &mut App) {
@@ -21,7 +29,7 @@ fn a_robot_killed_on_screen_is_killed_by_the_command() {
     }
     app.apply(Deed::Killed(1));
     assert!(app.setup.command().ends_with("--robots 2 --kill 1@20"));
-    app.advance(0.0);
+    arrive(&mut app);
     assert_eq!(app.shown_tick(), 20);
     finish(&mut app);
     let outcome = app.runs[0].watch.outcome().unwrap();
@@ -54,7 +62,7 @@ fn a_robot_that_stopped_is_told_to_go_on_by_the_command_too() {
         "{}",
         app.setup.command()
     );
-    app.advance(0.0);
+    arrive(&mut app);
     app.playing = false;
     assert_eq!(app.shown_tick(), end);
     finish(&mut app);
@@ -96,11 +104,42 @@ fn a_trace_with_faults_of_senses_is_replayed_and_run_again() {
 }
 
 #[test]
+fn a_drone_killed_on_screen_is_killed_by_the_command() {
+    for address in [
+        "terrain=urban:3&size=24&robots=2",
+        "terrain=town:2&size=24&robots=2",
+    ] {
+        let mut app = App::from_address(address);
+        app.playing = false;
+        for _ in 0..6 {
+            app.tick();
+        }
+        app.apply(Deed::Selected(Some(1)));
+        app.apply(Deed::Killed(1));
+        assert_eq!(app.address(), format!("{address}&kill=1@6"));
+        arrive(&mut app);
+        assert_eq!((app.shown_tick(), app.playing), (6, false));
+        let drone = app.survey.as_ref().unwrap().drone(1);
+        assert!(!drone.is_alive, "{drone:?}");
+        finish(&mut app);
+        assert_eq!(app.report().state, "complete", "{address}");
+        let ticks = app.last_tick();
+        app.go_on(None);
+        arrive(&mut app);
+        assert!(app.playing && app.shown_tick() == ticks);
+        assert!(
+            app.address()
+                .ends_with(&format!("&resume=0@{ticks}&resume=1@{ticks}"))
+        );
+    }
+}
+
+#[test]
 fn a_cell_is_shut_and_opened_on_the_way() {
     let mut app = app();
     let cell = app.starts()[0].step(Direction::East);
     let obstructions = |app: &mut App| {
-        app.advance(0.0);
+        arrive(app);
         app.tick();
         app.runs[0].watch.obstructions().to_vec()
     };
@@ -211,7 +250,13 @@ fn a_saved_survey_is_replayed_and_flown_again() {
         let mut app = App::from_address(address);
         finish(&mut app);
         let digest = app.report().digest;
-        let bytes = app.survey.as_ref().unwrap().file().unwrap();
+        let bytes = app
+            .survey
+            .as_ref()
+            .unwrap()
+            .export(Export::Trace)
+            .unwrap()
+            .1;
         let mut other = App::new(Setup::default());
         other.open("trace.csv", &bytes);
         let replayed = other.report();

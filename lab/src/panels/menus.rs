@@ -1,29 +1,21 @@
-//! What can be set: map, robots, planner, radio, view, and what can be taken away.
-
-use std::mem::discriminant;
+//! What can be set of an exploration: map, robots, planner, radio, pointer, view.
 
 use clap::ValueEnum;
-use egui::{Button, CollapsingHeader, ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
+use egui::{CollapsingHeader, ComboBox, DragValue, RichText, Slider, Ui};
 use host_sim::planners::PlannerKind;
-use host_sim::scenario::heights::Planner;
 use host_sim::scenario::{Conditions, ErrorKind, Faults, MediumKind, Preset, Reach, Trouble};
 use host_sim::sensor::ALL_AROUND;
-use host_sim::terrain::TerrainSource;
 use host_sim::world::{Family, Starts};
 use planner_core::Extent;
 use planner_core::explorer::MAX_CLEARANCE;
 use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 
+use super::parts::{choice, events, files, medium, number, title};
 use crate::app::App;
-use crate::export;
 use crate::ground::ALL_TICKS;
-use crate::maps::{Map, file_name};
-use crate::platform::{Inbox, choose_file, save};
+use crate::maps::Map;
 use crate::setup::Setup;
-use crate::survey::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveyScene, SurveySetup};
 use crate::view::Tool;
-
-const ADDRESS_COPIED: &str = "copied: the part of the page's address behind #";
 
 impl App {
     pub(super) fn menus(&mut self, ui: &mut Ui) {
@@ -69,7 +61,7 @@ impl App {
         self.tools(ui);
         title(ui, "View");
         self.layers(ui);
-        title(ui, "Take away");
+        title(ui, "Export");
         self.exports(ui);
     }
 
@@ -135,7 +127,7 @@ impl App {
         let name = self
             .rival
             .map_or("nothing".to_owned(), |rival| rival.to_string());
-        ComboBox::from_label("beside it")
+        ComboBox::from_label("compare with")
             .selected_text(name)
             .show_ui(ui, |ui| {
                 ui.selectable_value(&mut self.rival, None, "nothing");
@@ -196,240 +188,6 @@ impl App {
             ui.label(RichText::new(hint).weak());
         }
     }
-
-    fn exports(&mut self, ui: &mut Ui) {
-        let Some(run) = self.runs.first() else { return };
-        let name = file_name(run.watch.scenario().world.name());
-        let mut done = None;
-        ui.horizontal_wrapped(|ui| {
-            if ui.button("PNG").clicked() {
-                let png = export::png(&run.watch);
-                done = Some(png.and_then(|png| save(&format!("{name}.png"), &png)));
-            }
-            if ui.button("GIF").clicked() {
-                let gif = export::gif(&run.watch.trace());
-                done = Some(gif.and_then(|gif| save(&format!("{name}.gif"), &gif)));
-            }
-            if ui.button("Trace").clicked() {
-                let trace = export::trace(&run.watch.trace());
-                done = Some(trace.and_then(|trace| save(&format!("{name}-trace.csv"), &trace)));
-            }
-            if ui.button("Map").clicked() {
-                let text = run.watch.scenario().world.to_text();
-                let file = run.setup.map.file();
-                let file = file.file_stem().unwrap_or_default().to_string_lossy();
-                done = Some(save(&format!("{file}.txt"), text.as_bytes()));
-            }
-        });
-        let is_replay = run.watch.is_replay();
-        ui.horizontal_wrapped(|ui| {
-            if ui
-                .button("Copy command")
-                .on_hover_text(self.setup.command())
-                .clicked()
-            {
-                ui.ctx().copy_text(self.setup.command());
-                done = Some(Ok(match self.setup.map {
-                    Map::Given(_) => "copied; save the map (button Map) beside it".to_owned(),
-                    _ => "copied".to_owned(),
-                }));
-            }
-            if ui.button("Copy address").clicked() {
-                ui.ctx().copy_text(format!("#{}", self.setup.address()));
-                done = Some(Ok(ADDRESS_COPIED.to_owned()));
-            }
-            if ui
-                .add_enabled(is_replay, Button::new("Run again"))
-                .clicked()
-            {
-                self.set(self.setup.clone());
-            }
-        });
-        if let Some(done) = done {
-            self.say(done);
-        }
-        let digest = self.report().digest;
-        if !digest.is_empty() {
-            ui.label(format!("trace digest {digest}"));
-        }
-    }
-
-    fn survey_menus(&mut self, ui: &mut Ui) {
-        let Some(survey) = &mut self.survey else {
-            return;
-        };
-        let mut setup = survey.setup.clone();
-        title(ui, "Terrain");
-        terrain(ui, &mut setup);
-        files(ui, &self.inbox, &mut self.path);
-        title(ui, "Drones");
-        ui.add(Slider::new(&mut setup.robots, ROBOTS).text("drones"));
-        if !setup.is_of_voxels() {
-            choice(ui, "planner", &mut setup.planner, Planner::value_variants());
-        }
-        ui.add(Slider::new(&mut setup.range, RANGES).text("sensor range"));
-        if !setup.is_of_voxels() {
-            ui.add(Slider::new(&mut setup.min_altitude, ALTITUDES).text("least altitude"));
-            ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
-        }
-        ui.horizontal(|ui| {
-            number(
-                ui,
-                "seed of the drones",
-                DragValue::new(&mut setup.conditions.seed),
-            );
-        });
-        title(ui, "Radio");
-        medium(ui, &mut setup.conditions);
-        title(ui, "View");
-        let levels = survey.levels();
-        let layers = &mut survey.layers;
-        ui.checkbox(&mut layers.hidden, "ground that was not seen");
-        match levels {
-            None => {
-                ui.checkbox(&mut layers.ceiling, "ceiling");
-            }
-            Some(levels) => {
-                layers.levels = layers.levels.min(levels);
-                ui.add(Slider::new(&mut layers.levels, 1..=levels).text("levels"));
-            }
-        }
-        let changed = setup != survey.setup;
-        title(ui, "Take away");
-        let done = survey_exports(ui, survey);
-        let again = survey.is_replay()
-            && ui
-                .add_enabled(survey.is_repeatable(), Button::new("Run again"))
-                .clicked();
-        if changed || again {
-            let layers = survey.layers;
-            self.fly(setup);
-            if let Some(survey) = &mut self.survey {
-                survey.layers = layers;
-            }
-        }
-        if let Some(done) = done {
-            self.say(done);
-        }
-    }
-}
-
-/// Buttons that take a survey away; says what was done.
-fn survey_exports(ui: &mut Ui, survey: &SurveyScene) -> Option<Result<String, String>> {
-    let name = file_name(survey.name());
-    let mut done = None;
-    ui.horizontal_wrapped(|ui| {
-        if ui.button("PNG").clicked() {
-            let png = survey.png();
-            done = Some(png.and_then(|png| save(&format!("{name}.png"), &png)));
-        }
-        if ui.button("GIF").clicked() {
-            let gif = survey.gif();
-            done = Some(gif.and_then(|gif| save(&format!("{name}.gif"), &gif)));
-        }
-        if ui.button("Trace").clicked() {
-            let csv = survey.file();
-            done = Some(csv.and_then(|csv| save(&format!("{name}-trace.csv"), &csv)));
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        let command = survey.setup.command();
-        let hint = "this trace was flown with more than the menus can set";
-        let button = ui.add_enabled(survey.is_repeatable(), Button::new("Copy command"));
-        let button = button.on_disabled_hover_text(hint);
-        if button.on_hover_text(&command).clicked() {
-            ui.ctx().copy_text(command);
-            done = Some(Ok("copied".to_owned()));
-        }
-        let button = ui.add_enabled(survey.is_repeatable(), Button::new("Copy address"));
-        if button.on_disabled_hover_text(hint).clicked() {
-            ui.ctx().copy_text(format!("#{}", survey.setup.address()));
-            done = Some(Ok(ADDRESS_COPIED.to_owned()));
-        }
-    });
-    if let Some(digest) = survey.digest() {
-        ui.label(format!("trace digest {digest}"));
-    }
-    done
-}
-
-/// A way in for maps and traces.
-fn files(ui: &mut Ui, inbox: &Inbox, path: &mut String) {
-    ui.horizontal(|ui| {
-        if cfg!(target_arch = "wasm32") {
-            if ui.button("Open a file …").clicked() {
-                choose_file("", inbox, ui.ctx());
-            }
-        } else {
-            let edit = TextEdit::singleline(path).hint_text("path of a map or trace");
-            let entered = ui.add(edit.desired_width(150.0)).lost_focus()
-                && ui.input(|input| input.key_pressed(egui::Key::Enter));
-            if ui.button("Open").clicked() || entered {
-                choose_file(path, inbox, ui.ctx());
-            }
-        }
-    });
-    ui.label(RichText::new("or drop a map or a trace here").weak());
-}
-
-/// A kind of place, drawn by a seed.
-type Place = fn(u64) -> TerrainSource;
-
-/// Which place, which seed, how large.
-fn terrain(ui: &mut Ui, setup: &mut SurveySetup) {
-    let mut seed = match setup.terrain {
-        TerrainSource::Gaussian(seed) | TerrainSource::Urban(seed) | TerrainSource::Town(seed) => {
-            seed
-        }
-        TerrainSource::File(_) => 0,
-    };
-    let places: [(Place, _); 3] = [
-        (TerrainSource::Gaussian, "hills"),
-        (TerrainSource::Urban, "town"),
-        (TerrainSource::Town, "town with rooms"),
-    ];
-    let is_chosen =
-        |place: fn(u64) -> TerrainSource| discriminant(&place(0)) == discriminant(&setup.terrain);
-    let mut chosen = places.iter().position(|(place, _)| is_chosen(*place));
-    ui.horizontal_wrapped(|ui| {
-        for (index, (_, name)) in places.iter().enumerate() {
-            ui.selectable_value(&mut chosen, Some(index), *name);
-        }
-    });
-    ui.horizontal(|ui| number(ui, "seed", DragValue::new(&mut seed)));
-    // A place out of a trace stays until another one is chosen.
-    if let Some(index) = chosen {
-        setup.terrain = places[index].0(seed);
-    }
-    let sizes = setup.sizes();
-    setup.size = setup.size.min(*sizes.end());
-    ui.add(Slider::new(&mut setup.size, sizes).text("columns a side"));
-}
-
-fn title(ui: &mut Ui, text: &str) {
-    ui.add_space(6.0);
-    ui.label(RichText::new(text).strong());
-}
-
-/// A number behind its name.
-fn number(ui: &mut Ui, name: &str, value: DragValue<'_>) {
-    let label = ui.label(name);
-    ui.add(value).labelled_by(label.id);
-}
-
-fn choice<T: ValueEnum + PartialEq + Copy + ToString>(
-    ui: &mut Ui,
-    name: &str,
-    value: &mut T,
-    all: &[T],
-) {
-    ComboBox::from_label(name)
-        .selected_text(value.to_string())
-        .show_ui(ui, |ui| {
-            for &other in all {
-                ui.selectable_value(value, other, other.to_string());
-            }
-        });
 }
 
 fn robots(ui: &mut Ui, setup: &mut Setup) {
@@ -494,50 +252,7 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
     if let Some(Starts::Random(seed) | Starts::Spread(seed)) = &mut setup.starts {
         *seed = setup.conditions.seed;
     }
-    let faults = &mut setup.conditions.faults;
-    if !faults.deaths.is_empty() || !faults.arrivals.is_empty() {
-        let (deaths, arrivals) = (faults.deaths.len(), faults.arrivals.len());
-        ui.horizontal_wrapped(|ui| {
-            ui.label(format!("{deaths} killed, {arrivals} added on the way"));
-            if ui.button("Revive").clicked() {
-                faults.deaths.clear();
-                faults.arrivals.clear();
-            }
-        });
-    }
-    let others = Faults {
-        deaths: Vec::new(),
-        arrivals: Vec::new(),
-        ..faults.clone()
-    };
-    if others != Faults::default() {
-        ui.horizontal_wrapped(|ui| {
-            ui.label(in_words(&others));
-            if ui.button("Without them").clicked() {
-                *faults = Faults {
-                    deaths: std::mem::take(&mut faults.deaths),
-                    arrivals: std::mem::take(&mut faults.arrivals),
-                    ..Faults::default()
-                };
-            }
-        });
-    }
-}
-
-/// The faults that no button sets, as many as there are of each kind.
-fn in_words(faults: &Faults) -> String {
-    let counts = [
-        (faults.restarts.len(), "restarted"),
-        (faults.resumes.len(), "told to go on"),
-        (faults.closures.len(), "cells closed"),
-        (faults.shut.len(), "cells shut"),
-        (faults.blind.len(), "cells that no look shows"),
-        (faults.sensor_failures.len(), "sensors fail"),
-        (faults.lost_poses.len(), "poses lost"),
-    ];
-    let some = counts.iter().filter(|(count, _)| *count > 0);
-    let words: Vec<String> = some.map(|(count, of)| format!("{count} {of}")).collect();
-    words.join(", ")
+    events(ui, &mut setup.conditions.faults);
 }
 
 /// Looks that err, poses that slip, people and doors.
@@ -563,18 +278,6 @@ fn trouble(ui: &mut Ui, trouble: &mut Trouble) {
     if !trouble.is_none() && ui.button("Without all that").clicked() {
         *trouble = Trouble::default();
     }
-}
-
-/// What carries messages, and how many are lost.
-fn medium(ui: &mut Ui, conditions: &mut Conditions) {
-    let was_radio = conditions.medium == MediumKind::Radio;
-    let all = MediumKind::value_variants();
-    choice(ui, "medium", &mut conditions.medium, all);
-    if was_radio && conditions.medium == MediumKind::Ideal {
-        *conditions = conditions.clone().without_frames();
-    }
-    let loss = Slider::new(&mut conditions.loss, 0.0..=1.0);
-    ui.add(loss.max_decimals(2).text("loss"));
 }
 
 fn radio(ui: &mut Ui, conditions: &mut Conditions) {

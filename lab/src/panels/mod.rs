@@ -1,9 +1,13 @@
 //! The screen: menus on the left, views in the middle, the robot and the curves on the
 //! right, time below. On a phone, one thing at a time.
 
+mod examples;
+mod exports;
 mod menus;
+mod parts;
 mod plots;
 mod robot;
+mod survey_menus;
 mod time;
 
 use egui::{CentralPanel, Frame, Key, Margin, Panel, RichText, ScrollArea, Theme, Ui};
@@ -11,11 +15,21 @@ use egui::{CentralPanel, Frame, Key, Margin, Panel, RichText, ScrollArea, Theme,
 use crate::app::App;
 use crate::colors::Colors;
 use crate::ground::Subject;
+use crate::playback::{Playback, Verdict};
 use crate::view;
-use crate::watch::Verdict;
 
 /// Narrower screens show one thing at a time.
 const NARROW: f32 = 820.0;
+
+/// Keys, and what they do.
+const KEYS: [(&str, &str); 6] = [
+    ("Space", "play or pause"),
+    ("Right", "one tick on"),
+    ("Left", "one tick back"),
+    ("Home", "the first tick"),
+    ("End", "the last tick so far"),
+    ("Escape", "no robot selected"),
+];
 
 /// What covers the views on a narrow screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,10 +90,14 @@ impl App {
             ui.separator();
             let flies = self.survey.is_some();
             if ui.selectable_label(!flies, "2-D").clicked() && flies {
-                self.survey = None;
+                self.land();
             }
             if ui.selectable_label(flies, "3-D survey").clicked() && !flies {
                 self.fly(Default::default());
+            }
+            self.examples(ui);
+            if !is_narrow {
+                ui.menu_button("Keys", keys);
             }
             ui.separator();
             let dark = ui.visuals().dark_mode;
@@ -99,33 +117,22 @@ impl App {
 
     /// How the first run stands, in words.
     fn headline(&self) -> String {
-        if let Some(survey) = &self.survey {
-            let steps = survey.shown();
-            let seen = survey.curve().nth(steps).unwrap_or(0.0);
-            let name = survey.name();
-            let verdict = match () {
-                () if !survey.is_over() || steps < survey.steps() => "",
-                () if survey.is_complete() => ": complete",
-                () => ": over, not complete",
-            };
-            return format!("{name}: {seen:.1} % of the ground seen{verdict}");
-        }
-        let Some(run) = self.runs.first() else {
+        let players = self.players();
+        let Some(player) = players.first() else {
             return String::new();
         };
-        let watch = &run.watch;
-        let (seen, all) = (watch.seen_cells(), watch.reachable().count());
-        let verdict = match watch.verdict() {
-            _ if watch.shown() < watch.ticks() => "",
+        let verdict = match player.verdict() {
+            _ if player.shown() < player.ticks() => "",
             Verdict::Running => "",
             Verdict::Complete => ": complete",
             Verdict::Incomplete => ": over, not complete",
         };
-        let share = 100.0 * f64::from(seen) / f64::from(all.max(1));
-        format!(
-            "{}: {share:.1} % of {all} cells seen{verdict}",
-            watch.scenario().world.name()
-        )
+        let (name, seen) = (player.name(), player.seen_percent());
+        let all = match (&self.survey, self.runs.first()) {
+            (None, Some(run)) => format!("{} cells", run.watch.reachable().count()),
+            _ => "the ground".to_owned(),
+        };
+        format!("{name}: {seen:.1} % of {all} seen{verdict}")
     }
 
     fn notice(&mut self, ui: &mut Ui) {
@@ -157,7 +164,8 @@ impl App {
 
     fn details(&mut self, ui: &mut Ui) {
         if self.survey.is_some() {
-            self.survey_details(ui);
+            self.drone(ui);
+            self.survey_plots(ui);
         } else {
             self.robot(ui);
             self.plots(ui);
@@ -167,7 +175,10 @@ impl App {
     /// Known map and real world of one run, or the known maps of two.
     fn views(&mut self, ui: &mut Ui, is_narrow: bool) {
         if let Some(survey) = &mut self.survey {
-            return survey.show(ui);
+            if let Some(deed) = survey.view(ui, self.selected, self.tool) {
+                self.apply(deed);
+            }
+            return;
         }
         let known = self.selected.map_or(Subject::Team, Subject::Robot);
         let mut wanted = Vec::new();
@@ -262,8 +273,7 @@ impl App {
         )
     }
 
-    /// Space plays and pauses, arrows go to the next or last tick, Home and End to the
-    /// first and last; Escape selects nothing.
+    /// What the keys of [`KEYS`] do.
     fn keys(&mut self, ui: &Ui) {
         if ui.ctx().egui_wants_keyboard_input() {
             return;
@@ -290,4 +300,15 @@ impl App {
             self.selected = None;
         }
     }
+}
+
+/// The keyboard in a few lines.
+fn keys(ui: &mut Ui) {
+    egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+        for (key, what) in KEYS {
+            ui.label(RichText::new(key).strong());
+            ui.label(what);
+            ui.end_row();
+        }
+    });
 }

@@ -7,6 +7,7 @@ use egui_plot::{
 
 use crate::app::{App, Shown};
 use crate::colors::Colors;
+use crate::playback::Playback;
 use crate::watch::Point;
 
 /// Points on a curve at most: one for each of the panel's pixels, about.
@@ -47,7 +48,7 @@ impl App {
         }
     }
 
-    pub(super) fn survey_details(&mut self, ui: &mut Ui) {
+    pub(super) fn survey_plots(&mut self, ui: &mut Ui) {
         let Some(survey) = &self.survey else { return };
         let colors = Colors::of(ui);
         ui.label(RichText::new("Ground seen, %").strong());
@@ -59,20 +60,13 @@ impl App {
         small("ground").show(ui, |plot| {
             let line = Line::new("seen", PlotPoints::from(points));
             plot.line(line.stroke(Stroke::new(2.0, colors.robot(0))));
-            let now = VLine::new("", survey.shown() as f64);
+            let now = VLine::new("", f64::from(survey.shown()));
             plot.vline(now.stroke(Stroke::new(1.0, colors.ink)));
         });
-        let state = if survey.is_over() {
-            "over"
-        } else {
-            "under way"
-        };
-        ui.label(format!("The survey is {state}."));
         ui.label(match survey.violations() {
             (wrong, 0) => format!("No flight was {wrong}."),
             (wrong, flights) => format!("{flights} flights were {wrong}."),
         });
-        ui.label("Drag turns the view, the wheel or two fingers zoom.");
     }
 }
 

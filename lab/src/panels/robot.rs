@@ -7,7 +7,7 @@ use planner_core::Wait;
 
 use crate::app::App;
 use crate::decisions::{decisions, name};
-use crate::watch::Verdict;
+use crate::playback::{Playback, Verdict};
 
 /// Decisions that are shown.
 const DECISIONS: usize = 12;
@@ -18,16 +18,7 @@ impl App {
         let watch = &run.watch;
         let robots = watch.scenario().starts.len();
         let mut chosen = self.selected;
-        ui.horizontal(|ui| {
-            let text = chosen.map_or("all robots".to_owned(), |robot| format!("robot {robot}"));
-            let menu = egui::ComboBox::from_label("looked at").selected_text(text);
-            menu.show_ui(ui, |ui| {
-                ui.selectable_value(&mut chosen, None, "all robots");
-                for robot in 0..robots {
-                    ui.selectable_value(&mut chosen, Some(robot), format!("robot {robot}"));
-                }
-            });
-        });
+        choose(ui, &mut chosen, "robot", robots);
         let Some(robot) = chosen.filter(|&robot| robot < robots) else {
             ui.label("Click a robot to see its map, its state and its decisions.");
             if let Some(differs) = watch.differs() {
@@ -98,16 +89,7 @@ impl App {
         let work = own().map(|it| it.work).max().unwrap_or(0);
         rows.push(("bytes sent so far", bytes.to_string()));
         rows.push(("largest work in a tick", work.to_string()));
-        Grid::new("state")
-            .num_columns(2)
-            .striped(true)
-            .show(ui, |ui| {
-                for (what, value) in rows {
-                    ui.label(what);
-                    ui.label(value);
-                    ui.end_row();
-                }
-            });
+        table(ui, rows);
         ui.label(RichText::new("Last decisions").strong());
         for decision in decisions(watch, robot, DECISIONS) {
             ui.label(format!("{}: {}", decision.tick, decision.text));
@@ -121,6 +103,70 @@ impl App {
         ui.separator();
         self.selected = chosen;
     }
+}
+
+impl App {
+    /// The drone that was clicked.
+    pub(super) fn drone(&mut self, ui: &mut Ui) {
+        let Some(survey) = &self.survey else { return };
+        let drones = usize::from(survey.setup.robots);
+        choose(ui, &mut self.selected, "drone", drones);
+        let chosen = self.selected.filter(|&drone| drone < drones);
+        let (kills, goes_on) = match chosen.map(|drone| survey.drone(drone)) {
+            Some(seen) => {
+                let kills = seen.is_alive && !survey.is_replay();
+                let goes_on = kills && seen.has_stopped;
+                table(ui, seen.rows);
+                (kills, goes_on)
+            }
+            None => {
+                ui.label("Click a drone to see its state and what it costs.");
+                let is_at_end = survey.shown() == survey.ticks() && !survey.is_replay();
+                (false, is_at_end && survey.verdict() != Verdict::Running)
+            }
+        };
+        if kills && ui.button("Kill this drone").clicked() {
+            self.selected.into_iter().for_each(|drone| self.kill(drone));
+        }
+        let label = match chosen {
+            Some(_) => "Let this drone go on",
+            None => "Let all drones go on",
+        };
+        if goes_on && ui.button(label).clicked() {
+            self.go_on(chosen);
+        }
+        ui.separator();
+    }
+}
+
+/// Which robot is looked at more closely, if one is.
+fn choose(ui: &mut Ui, chosen: &mut Option<usize>, kind: &str, robots: usize) {
+    let name = |robot: Option<usize>| match robot {
+        Some(robot) => format!("{kind} {robot}"),
+        None => format!("all {kind}s"),
+    };
+    ui.horizontal(|ui| {
+        let menu = egui::ComboBox::from_label("selected").selected_text(name(*chosen));
+        menu.show_ui(ui, |ui| {
+            for robot in std::iter::once(None).chain((0..robots).map(Some)) {
+                ui.selectable_value(chosen, robot, name(robot));
+            }
+        });
+    });
+}
+
+/// Names and values, row by row.
+fn table(ui: &mut Ui, rows: Vec<(&str, String)>) {
+    Grid::new("state")
+        .num_columns(2)
+        .striped(true)
+        .show(ui, |ui| {
+            for (what, value) in rows {
+                ui.label(what);
+                ui.label(value);
+                ui.end_row();
+            }
+        });
 }
 
 fn reason(wait: Wait) -> String {

@@ -20,15 +20,7 @@ impl App {
                 self.tick();
             }
             if ui.button("Restart").clicked() {
-                match &self.survey {
-                    Some(survey) if survey.is_replay() => self.show(0),
-                    Some(survey) => self.fly(survey.setup.clone()),
-                    None if self.runs.iter().any(|run| run.watch.is_replay()) => self.show(0),
-                    None => {
-                        self.set(self.setup.clone());
-                    }
-                }
-                self.playing = true;
+                self.restart();
             }
             ui.add(
                 Slider::new(&mut self.speed, 1.0..=2000.0)

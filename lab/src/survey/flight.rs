@@ -1,14 +1,18 @@
 //! A fleet that flies, or has flown, whatever its world is made of.
 
 use egui::{Color32, Shape};
+use host_sim::record::{Deed, Kind, Record};
+use host_sim::scenario::Faults;
+use host_sim::scene::octree::OcTree;
 use image::RgbImage;
-use planner_core::{Extent, Point};
+use planner_core::{Extent, Point, RobotId};
 
 use super::SurveySetup;
 use super::eye::Eye;
 use super::heights::Heights;
 use super::voxels::Voxels;
 use crate::colors::{Colors, mix};
+use crate::decisions::stop;
 
 /// What is drawn of a survey.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,6 +81,72 @@ pub(super) trait Flight {
 
     /// The trace as host-sim writes it.
     fn file(&self) -> Result<Vec<u8>, String>;
+
+    /// What had been seen after so many steps, as an octree.
+    fn octree(&self, steps: u32) -> OcTree;
+
+    /// What a drone did in the last of so many steps.
+    fn drone(&self, drone: usize, steps: u32) -> Drone;
+}
+
+/// A drone at the shown step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drone {
+    /// What it does, where, and at what cost: names and values.
+    pub rows: Vec<(&'static str, String)>,
+    /// Whether it lives.
+    pub is_alive: bool,
+    /// Whether it has stopped.
+    pub has_stopped: bool,
+}
+
+impl Drone {
+    /// Reads it out of the records of a trace; `place` writes where it is.
+    pub(super) fn of<K>(
+        (records, faults): (&[Record<K>], &Faults),
+        drone: usize,
+        steps: u32,
+        place: impl Fn(K::Place) -> String,
+    ) -> Self
+    where
+        K: Kind<Deed = Deed>,
+        K::Goal: std::fmt::Display,
+    {
+        let done = records.partition_point(|record| record.tick < steps);
+        let own = || {
+            let own = records[..done].iter();
+            own.filter(|record| usize::from(record.robot) == drone)
+        };
+        let is_alive = faults.is_alive(RobotId(drone.min(255) as u8), steps);
+        let last = own().last();
+        let state = match last.map(|record| record.deed) {
+            _ if !is_alive => "not there, or dead".into(),
+            None => "about to begin".into(),
+            Some(Deed::Flew) => "flies".into(),
+            Some(Deed::Refused) => "kept from flying, for another drone's sake".into(),
+            Some(Deed::Hovered) => "hovers".into(),
+            Some(Deed::Stopped(reason)) => stop(reason).into(),
+        };
+        let mut rows = vec![("state", state)];
+        if let Some(record) = last {
+            let goal = record.goal;
+            rows.push(("at", place(record.at)));
+            rows.push(("goal", goal.map_or("none".into(), |goal| goal.to_string())));
+            rows.push(("known", record.known.to_string()));
+            rows.push(("work in this step", record.work.to_string()));
+            rows.push(("bytes in this step", record.sent.bytes.to_string()));
+        }
+        let bytes: u64 = own().map(|record| u64::from(record.sent.bytes)).sum();
+        rows.push(("bytes sent so far", bytes.to_string()));
+        let work = own().map(|record| record.work).max().unwrap_or(0);
+        rows.push(("largest work in a step", work.to_string()));
+        let has_stopped = last.is_some_and(|record| matches!(record.deed, Deed::Stopped(_)));
+        Self {
+            rows,
+            is_alive,
+            has_stopped,
+        }
+    }
 }
 
 /// A run before its first step.

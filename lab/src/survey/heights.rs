@@ -6,13 +6,14 @@ use egui::Shape;
 use host_sim::draw::{animate, oblique_view, top_view};
 use host_sim::record::heights::{Record, Trace};
 use host_sim::run::heights::{self, Stepping};
+use host_sim::scene::octree::OcTree;
 use host_sim::terrain::{Terrain, TerrainSource};
 use image::RgbImage;
 use planner_core::{Cell, Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
-use super::flight::{Flight, Layers, shade};
+use super::flight::{Drone, Flight, Layers, shade};
 use crate::colors::Colors;
 
 /// A run over heights.
@@ -177,6 +178,18 @@ impl Flight for Heights {
         animate(steps, |step| top_view(trace, step), &mut gif)
             .map_err(|error| error.to_string())?;
         Ok(gif)
+    }
+
+    fn octree(&self, steps: u32) -> OcTree {
+        self.trace().octree(steps)
+    }
+
+    fn drone(&self, drone: usize, steps: u32) -> Drone {
+        let trace = self.trace();
+        let faults = &trace.scenario.conditions.faults;
+        Drone::of((&trace.records, faults), drone, steps, |at| {
+            format!("{:.1}, {:.1}, {:.1}", at.x, at.y, at.z)
+        })
     }
 
     fn file(&self) -> Result<Vec<u8>, String> {

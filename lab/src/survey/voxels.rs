@@ -5,13 +5,14 @@ use host_sim::draw::{animate, oblique_voxels};
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::voxels::Simulation;
 use host_sim::scene::Scene;
+use host_sim::scene::octree::OcTree;
 use image::RgbImage;
 use planner_core::volume::Voxel;
 use planner_core::{Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
-use super::flight::{Flight, Layers, shade};
+use super::flight::{Drone, Flight, Layers, shade};
 use crate::colors::Colors;
 
 /// Not seen.
@@ -197,6 +198,16 @@ impl Flight for Voxels {
         animate(steps, |step| oblique_voxels(trace, step), &mut gif)
             .map_err(|error| error.to_string())?;
         Ok(gif)
+    }
+
+    fn octree(&self, steps: u32) -> OcTree {
+        self.trace().octree(steps)
+    }
+
+    fn drone(&self, drone: usize, steps: u32) -> Drone {
+        let trace = self.trace();
+        let faults = &trace.scenario.conditions.faults;
+        Drone::of((&trace.records, faults), drone, steps, |at| at.to_string())
     }
 
     fn file(&self) -> Result<Vec<u8>, String> {

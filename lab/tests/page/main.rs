@@ -9,6 +9,7 @@ use std::process::Command;
 use browser::{Browser, serve};
 use host_sim::chip::{Machine, Swarm};
 use host_sim::run::{self, Options, heights};
+use lab::playback::{Export, Playback};
 use lab::setup::Setup;
 use lab::survey::{SurveyScene, SurveySetup};
 use serde_json::Value;
@@ -111,12 +112,12 @@ fn dropped_traces_of_surveys_are_played_or_refused_with_a_sentence() {
         ("terrain=town:2&size=24&robots=2&range=6", "town-2"),
     ] {
         let mut flown = SurveyScene::new(SurveySetup::from_address(address).unwrap()).unwrap();
-        while flown.step() {}
-        browser.drop_file("trace.csv", &flown.file().unwrap());
+        while flown.tick() {}
+        browser.drop_file("trace.csv", &flown.export(Export::Trace).unwrap().1);
         browser.wait("map", |name| name == map);
         browser.wait("state", |state| state == "complete");
-        assert_eq!(Some(&*browser.data("digest")), flown.digest(), "{address}");
-        assert_eq!(browser.data("ticks"), flown.steps().to_string());
+        assert_eq!(Some(browser.data("digest")), flown.digest(), "{address}");
+        assert_eq!(browser.data("ticks"), flown.ticks().to_string());
         assert_eq!(browser.data("error"), "");
     }
     assert_eq!(browser.console(), [""; 0]);

@@ -8,6 +8,7 @@ use egui::{Key, Theme, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, SnapshotOptions};
 use lab::App;
+use lab::playback::{Export, Playback};
 use painter::Painter;
 
 fn harness(address: &str, width: f32, height: f32, theme: Theme) -> Harness<'static, App> {
@@ -137,7 +138,8 @@ fn traces_of_surveys_are_dropped_played_and_scrubbed() {
         let mut flown = App::from_address(address);
         while flown.tick() {}
         let survey = flown.survey.as_ref().unwrap();
-        let (steps, file) = (survey.steps() as u32, survey.file().unwrap());
+        let (_, file) = survey.export(Export::Trace).unwrap();
+        let steps = survey.ticks();
         let mut harness = harness("map=circle", 1280.0, 900.0, Theme::Light);
         harness.state_mut().open("trace.csv", &file);
         assert_eq!(harness.state().report().error, "");
@@ -221,6 +223,25 @@ fn two_planners_side_by_side() {
     harness.state_mut().set(setup);
     play(&mut harness, 200);
     compare(&mut harness, "side-by-side");
+}
+
+#[test]
+fn examples_are_chosen_and_keys_are_told() {
+    let mut harness = harness("map=circle", 1280.0, 800.0, Theme::Light);
+    harness.run();
+    harness.get_by_label("Keys").click();
+    harness.run();
+    harness.get_by_label("play or pause");
+    harness.key_press(Key::Escape);
+    harness.run();
+    harness.get_by_label("Examples").click();
+    harness.run();
+    compare(&mut harness, "examples");
+    harness.get_by_label("Battery").click();
+    harness.step();
+    let state = harness.state();
+    assert_eq!(state.address(), "map=office&energy=300");
+    assert!(state.notice.as_ref().is_some_and(|notice| !notice.is_error));
 }
 
 #[test]

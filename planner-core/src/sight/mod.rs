@@ -9,11 +9,13 @@ mod metres;
 mod row;
 mod scan;
 mod walk;
+mod zones;
 
 pub use beam::{Beam, Bearing, RangeSensor};
 pub use line::{line_of_sight, look, look_far};
 pub use row::Row;
 pub use scan::{Pose, RangeScan, ScanError};
+pub use zones::{Distances, Zone, ZoneBeams, ZoneError, ZoneSensor};
 
 use crate::cell::Cell;
 use crate::tile::{TILE, TileIndex};

@@ -1,5 +1,6 @@
 mod metres;
 mod scan;
+mod zones;
 
 use std::vec::Vec;
 

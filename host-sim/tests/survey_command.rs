@@ -367,6 +367,60 @@ fn a_mesh_is_surveyed_from_inside_and_a_cloud_along_its_rays() {
     }
 }
 
+/// Over heights and in a town; and what one run writes, the next one does not leave.
+#[test]
+fn metres_and_seconds_are_told_wherever_a_cell_has_metres() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let run = |arguments: &str| -> Value {
+        let arguments = format!("{arguments} --robots 1 --json --out out");
+        let assert = survey(path, &arguments).assert().success();
+        serde_json::from_slice(&assert.get_output().stdout).unwrap()
+    };
+    let number = |value: &Value| value.as_f64().unwrap();
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * b;
+    let names = ["mission-0.plan", "mission-0.waypoints", "trajectory-0.csv"];
+    let are_there = || names.map(|name| path.join("out").join(name).exists());
+    let metric = "--metres-per-cell 2.5 --speed 0.5 --home 60,-1 --crazyflie";
+
+    let plain = run("--terrain gaussian:3 --size 16");
+    assert_eq!(plain["cell_size"], Value::Null);
+    assert_eq!(plain["seconds"], Value::Null);
+    let heights = run(&format!("--terrain gaussian:3 --size 16 {metric}"));
+    assert_eq!(heights["trace_digest"], plain["trace_digest"]);
+    assert!(near(
+        number(&heights["seconds"]),
+        10.0 * number(&heights["ticks"])
+    ));
+    let robot = &heights["robots"][0];
+    assert!(near(
+        number(&robot["metres"]),
+        2.5 * number(&robot["distance"])
+    ));
+    assert_eq!(are_there(), [true; 3]);
+    // Rows lead south, and the robot starts in the middle of a column near the corner.
+    let way = fs::read_to_string(path.join("out/trajectory-0.csv")).unwrap();
+    let first: Vec<f64> = way
+        .lines()
+        .nth(1)
+        .unwrap()
+        .split(',')
+        .map(|it| it.parse().unwrap())
+        .collect();
+    assert_eq!((first[1], first[9]), (2.5 * 2.5, -2.5 * 2.5));
+
+    let plain = run("--terrain town:1 --size 8 --range 4");
+    assert_eq!(are_there(), [false; 3]);
+    let town = run(&format!("--terrain town:1 --size 8 --range 4 {metric}"));
+    assert_eq!(town["trace_digest"], plain["trace_digest"]);
+    assert_eq!(
+        (&town["voxel_size"], &plain["voxel_size"]),
+        (&2.5.into(), &Value::Null)
+    );
+    assert!(near(number(&town["seconds"]), 5.0 * number(&town["ticks"])));
+    assert_eq!(are_there(), [true; 3]);
+}
+
 #[test]
 fn scenes_and_places_that_do_not_fit_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -409,7 +463,28 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             "--scene rooms.bt --home 91,0",
             ["--home", "LATITUDE,LONGITUDE"],
         ),
-        ("--home 1,1", ["--home", "--scene"]),
+        ("--home 1,1", ["--home", "--metres-per-cell"]),
+        (
+            "--terrain town:1 --speed 1",
+            ["--speed", "--metres-per-cell"],
+        ),
+        ("--crazyflie", ["--crazyflie", "--speed"]),
+        (
+            "--terrain town:1 --metres-per-cell 0",
+            ["--metres-per-cell 0", "0.001"],
+        ),
+        (
+            "--terrain town:1 --metres-per-cell 1 --metres-per-level 1",
+            ["--metres-per-level", "town"],
+        ),
+        (
+            "--metres-per-level 1",
+            ["--metres-per-level", "drawn by a seed"],
+        ),
+        (
+            "--scene rooms.bt --metres-per-cell 1",
+            ["--metres-per-cell", "--scene"],
+        ),
     ] {
         assert_refused(path, arguments, &words);
     }

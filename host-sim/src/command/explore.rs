@@ -214,7 +214,7 @@ impl Explore {
             let bytes = draw::recording(&trace, std::io::Cursor::new(Vec::new()))?.into_inner();
             files::write(path, &bytes).map_err(|error| format!("{}: {error}", path.display()))?;
         }
-        folder.close()?;
+        folder.close_run()?;
 
         if self.output.json {
             println!("{json}");

@@ -1,13 +1,15 @@
 //! `host-sim survey`.
 
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+mod print;
+mod ways;
+
+use std::path::PathBuf;
 use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::Args;
 use host_sim::draw::{Coverage, animate, oblique_view, oblique_voxels, top_view, write_png};
-use host_sim::export::{self, Home};
+use host_sim::export;
 use host_sim::run::heights::open;
 use host_sim::run::voxels::Simulation;
 use host_sim::scenario::heights::{Planner, Scenario};
@@ -15,10 +17,9 @@ use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
 use host_sim::scene::{Frame, Free, Scene, SceneOptions};
-use host_sim::summary::Head;
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
-use host_sim::terrain::TerrainSource;
+use host_sim::terrain::{TerrainOptions, TerrainSource};
 use indicatif::ProgressBar;
 use planner_core::survey::Limits;
 use planner_core::volume::Voxel;
@@ -26,20 +27,19 @@ use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
 use super::output::OutputArgs;
+use print::{ended, print, print_voxels};
+use ways::WayArgs;
 
 /// Columns along a side of a terrain of heights, unless said otherwise.
 const SIDE: u16 = 100;
 /// The same of a town of voxels, and the largest.
 const TOWN: u16 = 64;
 
-/// Metres a second in missions, unless said otherwise.
-const USUAL_SPEED: f64 = 1.0;
-
 #[derive(Args)]
 pub(crate) struct Survey {
-    /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell), an ESRI ASCII
-    /// grid (.asc, metres) or an OctoMap .bt or .ot file, of 1 to 512 columns on a side. town:SEED is a town of voxels with
-    /// rooms and bridges: there another planner flies, a voxel a step, and --planner,
+    /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell), a GeoTIFF or an
+    /// ESRI ASCII grid (.tif, .asc, metres) or an OctoMap .bt or .ot file, of 1 to 512 columns
+    /// on a side. town:SEED is a town of voxels with rooms and bridges: there another planner flies, a voxel a step, and --planner,
     /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
@@ -62,22 +62,19 @@ pub(crate) struct Survey {
     #[arg(long, value_name = "M", requires = "scene")]
     margin: Option<f64>,
     /// Where all robots start among voxels: metres in the coordinates of the --scene, whole
-    /// voxels in a town. Default: in the largest room, as far to the north-west as one can.
+    /// voxels in a town, metres with --metres-per-cell. Default: in the largest room, as far to the north-west as one can.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     start: Option<Start>,
-    /// How fast robots fly in the --scene, in metres a second: the summary has seconds then.
-    #[arg(long, value_name = "M/S", requires = "scene")]
-    speed: Option<f64>,
-    /// Writes the way of each robot in the --scene as a MAVLink mission, mission-N.plan and
-    /// mission-N.waypoints; the origin of the file lies at this latitude and longitude, x
-    /// leads east and y north.
-    #[arg(
-        long,
-        value_name = "LAT,LON",
-        requires = "scene",
-        allow_hyphen_values = true
-    )]
-    home: Option<Home>,
+    /// Side of a column of a drawn --terrain, a town or a picture in metres: what is counted in
+    /// cells is counted in metres, too. Other files say it themselves.
+    #[arg(long, value_name = "M", conflicts_with = "scene")]
+    metres_per_cell: Option<f64>,
+    /// Metres between two neighbouring shades of a picture, of 8 or 16 bits, or numbers of a
+    /// GeoTIFF. Default: a quarter of a cell; of a GeoTIFF 1.
+    #[arg(long, value_name = "M", conflicts_with = "scene")]
+    metres_per_level: Option<f64>,
+    #[command(flatten)]
+    ways: WayArgs,
     /// Columns along a side of a terrain drawn by a seed: 8 to 512, default 100; of a town
     /// of voxels 8 to 64, default 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(8..=512))]
@@ -126,7 +123,9 @@ impl Survey {
         if matches!(self.terrain, TerrainSource::Town(_)) {
             self.check_for_voxels()?;
             let scene = self.terrain.scene(self.size.unwrap_or(TOWN));
-            return self.run_in(&scene.ok_or("a town is a scene")?);
+            let scene = scene.ok_or("a town is a scene")?;
+            let scene = self.in_metres(scene)?;
+            return self.run_in(&scene);
         }
         if self.start.is_some() {
             return Err(
@@ -142,7 +141,9 @@ impl Survey {
                     .into(),
             );
         }
-        let terrain = self.terrain.load(self.size.unwrap_or(SIDE))?;
+        let size = self.size.unwrap_or(SIDE);
+        let terrain = self.terrain.load_with(size, &self.metres())?;
+        self.ways.check(terrain.scale().is_some())?;
         let terrain = Arc::new(terrain);
         let mut run = open(terrain.clone(), &self.scenario()?)?;
         let mut folder = self.output.folder(terrain.name())?;
@@ -152,7 +153,7 @@ impl Survey {
         }
         bar.finish_and_clear();
         let trace = run.finish();
-        let summary = Summary::new(&trace);
+        let summary = Summary::new(&trace).at_speed(self.ways.speed);
         let json = serde_json::to_string_pretty(&summary)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
@@ -169,8 +170,10 @@ impl Survey {
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
+        let ways = (0..trace.robots).filter_map(|robot| export::over_heights(&trace, robot));
+        self.ways.write(&mut folder, ways)?;
         let path = folder.path().to_path_buf();
-        folder.close()?;
+        folder.close_run()?;
         match self.output.json {
             true => println!("{json}"),
             false => print(&summary, &path),
@@ -178,12 +181,39 @@ impl Survey {
         Ok(ended(&summary.head, "columns", summary.violations))
     }
 
+    /// What is said of the metres of the terrain.
+    fn metres(&self) -> TerrainOptions {
+        TerrainOptions {
+            metres_per_cell: self.metres_per_cell,
+            metres_per_level: self.metres_per_level,
+        }
+    }
+
+    /// A town with voxels of as many metres as was said, its origin in its corner.
+    fn in_metres(&self, scene: Scene) -> Result<Scene, String> {
+        let metres = self.metres();
+        metres.check().map_err(|error| error.to_string())?;
+        if metres.metres_per_level.is_some() {
+            return Err("--metres-per-level does not apply in a town; leave it out".into());
+        }
+        Ok(match metres.metres_per_cell {
+            None => scene,
+            Some(voxel_size) => scene.framed(Some(Frame {
+                voxel_size,
+                ..Frame::PLAIN
+            })),
+        })
+    }
+
     /// The same in a scene of voxels.
     fn run_in(self, scene: &Scene) -> Done {
+        self.ways.check(scene.frame().is_some())?;
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
         scenario.range = self.range as u8;
         scenario.start = match self.start {
             Some(start) => Some(start.voxel(scene)?),
+            // A town with metres is flown from where it is without.
+            None if self.scene.is_none() => scene.clone().framed(None).start(),
             None => None,
         };
         self.set(&mut scenario.conditions)?;
@@ -195,7 +225,7 @@ impl Survey {
         }
         bar.finish_and_clear();
         let trace = run.finish();
-        let summary = VoxelSummary::new(&trace).at_speed(self.speed);
+        let summary = VoxelSummary::new(&trace).at_speed(self.ways.speed);
         let json = serde_json::to_string_pretty(&summary)?;
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
@@ -210,21 +240,10 @@ impl Survey {
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         folder.write("map.ply", |file| Ok(export::ply(&trace, file)?))?;
-        for robot in 0..trace.ways.len() {
-            let Some((home, way)) = self.home.zip(export::way_in_metres(&trace, robot)) else {
-                continue;
-            };
-            let plan = export::plan(&way, home, self.speed.unwrap_or(USUAL_SPEED));
-            let plan = serde_json::to_string_pretty(&plan)?;
-            folder.write(format!("mission-{robot}.plan"), |file| {
-                Ok(writeln!(file, "{plan}")?)
-            })?;
-            folder.write(format!("mission-{robot}.waypoints"), |file| {
-                Ok(export::waypoints(&way, home, file)?)
-            })?;
-        }
+        let ways = (0..trace.ways.len()).filter_map(|robot| export::among_voxels(&trace, robot));
+        self.ways.write(&mut folder, ways)?;
         let path = folder.path().to_path_buf();
-        folder.close()?;
+        folder.close_run()?;
         match self.output.json {
             true => println!("{json}"),
             false => print_voxels(&summary, &path),
@@ -251,11 +270,6 @@ impl Survey {
             return Err(format!(
                 "--{option} does not apply in a town of voxels, where one planner flies a voxel \
                  a step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
-            ));
-        }
-        if let Some(speed) = self.speed.filter(|speed| !(0.01..=100.0).contains(speed)) {
-            return Err(format!(
-                "--speed {speed}: expected 0.01 to 100 metres a second"
             ));
         }
         if let Some(size) = self.size.filter(|&size| size > TOWN) {
@@ -322,114 +336,4 @@ impl Start {
 fn advance(bar: &ProgressBar, seen: &[u32]) {
     bar.set_position(seen.last().copied().unwrap_or(0).into());
     bar.set_message(format!("step {}", seen.len()));
-}
-
-/// The exit status; says what is left, if something is.
-fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
-    if head.complete {
-        return ExitCode::SUCCESS;
-    }
-    eprintln!(
-        "not complete: {} of {} {places} unseen after {} steps, {violations} violations",
-        head.reachable_cells - head.seen_cells,
-        head.reachable_cells,
-        head.ticks,
-    );
-    ExitCode::FAILURE
-}
-
-fn after(ticks: Option<u32>) -> String {
-    ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"))
-}
-
-fn print(summary: &Summary, out: &Path) {
-    print_head(
-        &summary.head,
-        "columns",
-        summary.ticks_to_95,
-        summary.violations,
-    );
-    for (number, robot) in summary.robots.iter().enumerate() {
-        println!(
-            "  robot {number:<3} {:>6} steps, {:>6} columns known, {:>5} frames of {:>7} bytes sent, {}",
-            robot.steps,
-            robot.cells_known,
-            robot.frames_sent,
-            robot.bytes_sent,
-            state(robot.alive, robot.stop_reason.as_deref()),
-        );
-    }
-    print_end(&summary.head, out);
-}
-
-fn print_voxels(summary: &VoxelSummary, out: &Path) {
-    let places = "visible voxels";
-    print_head(
-        &summary.head,
-        places,
-        summary.ticks_to_95,
-        summary.violations,
-    );
-    for (number, robot) in summary.robots.iter().enumerate() {
-        println!(
-            "  robot {number:<3} {:>6} steps, {:>6} voxels known, {:>5} frames of {:>7} bytes sent, {}",
-            robot.steps,
-            robot.cells_known,
-            robot.frames_sent,
-            robot.bytes_sent,
-            state(robot.alive, robot.stop_reason.as_deref()),
-        );
-    }
-    if let Some((seconds, speed)) = summary.seconds.zip(summary.speed) {
-        println!("  time               {seconds:.0} s at {speed} m/s");
-    }
-    let metres = summary.robots.iter().filter_map(|robot| robot.metres);
-    if let Some(most) = metres.reduce(f64::max) {
-        println!("  longest way        {most:.1} m");
-    }
-    if let Some(free) = summary.free_space {
-        let what = match free {
-            Free::Rest => "taken for free where the file has nothing",
-            Free::Rays => "free along the rays from the viewpoint",
-        };
-        println!("  free space         {what}");
-    }
-    if summary.edge_cells > 0 {
-        println!(
-            "  end of the scene   {} voxels beside what was seen are unknown in the file",
-            summary.edge_cells
-        );
-    }
-    print_end(&summary.head, out);
-}
-
-fn print_head(head: &Head, places: &str, ticks_to_95: Option<u32>, violations: u32) {
-    let Head {
-        map,
-        seen_cells,
-        reachable_cells,
-        ..
-    } = head;
-    println!("{map}: {seen_cells} of {reachable_cells} {places} seen");
-    println!("  95 % seen          {}", after(ticks_to_95));
-    println!("  everything seen    {}", after(head.ticks_to_seen));
-    println!("  every robot done   {}", after(head.ticks_to_stopped));
-    println!(
-        "  most work          {} in one tick",
-        head.max_work_per_tick
-    );
-    println!("  violations         {violations}");
-}
-
-fn print_end(head: &Head, out: &Path) {
-    println!("  trace digest       {}", head.trace_digest);
-    println!("  results            {}", out.display());
-}
-
-fn state(alive: bool, stop: Option<&str>) -> &str {
-    match stop {
-        _ if !alive => "died",
-        Some(reason) => reason,
-        None => "had not stopped",
-    }
 }

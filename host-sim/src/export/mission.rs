@@ -7,10 +7,7 @@
 use std::io::{self, Write};
 use std::str::FromStr;
 
-use planner_core::volume::Voxel;
 use serde_json::{Value, json};
-
-use crate::record::voxels::VoxelTrace;
 
 /// Equatorial radius of the Earth in metres (WGS 84).
 const EARTH: f64 = 6_378_137.0;
@@ -62,35 +59,6 @@ impl Home {
             self.longitude + degrees(east, radius),
         )
     }
-}
-
-/// Where a robot started, turned and ended, in metres; `None` if the scene has none.
-pub fn way_in_metres(trace: &VoxelTrace, robot: usize) -> Option<Vec<[f64; 3]>> {
-    let frame = trace.scene.frame()?;
-    let turns = turns(&trace.ways[robot]).into_iter();
-    Some(turns.map(|voxel| frame.middle(voxel)).collect())
-}
-
-/// A way without the places within its straight legs.
-fn turns(way: &[Voxel]) -> Vec<Voxel> {
-    let step = |a: Voxel, b: Voxel| [b.x - a.x, b.y - a.y, b.z - a.z];
-    let mut turns: Vec<Voxel> = Vec::new();
-    for &at in way {
-        match turns[..] {
-            [.., last] if last == at => continue,
-            // Legs are one voxel long until they are joined.
-            [.., before, last] if direction(step(before, last)) == direction(step(last, at)) => {
-                turns.pop();
-            }
-            _ => {}
-        }
-        turns.push(at);
-    }
-    turns
-}
-
-fn direction(step: [i16; 3]) -> [i16; 3] {
-    step.map(i16::signum)
 }
 
 /// The mission of one robot as QGroundControl's `.plan`; `speed` in metres a second.
@@ -161,39 +129,6 @@ mod tests {
         latitude: 60.0,
         longitude: -1.0,
     };
-
-    #[test]
-    fn only_turns_are_kept() {
-        let at = |(x, y, z)| Voxel::new(x, y, z);
-        let way = [
-            (0, 0, 0),
-            (0, 0, 0),
-            (1, 0, 0),
-            (2, 0, 0),
-            (2, 0, 0),
-            (3, 0, 0),
-            (3, 1, 0),
-            (3, 1, 1),
-            (3, 1, 0),
-            (3, 0, 0),
-            (2, 0, 0),
-        ];
-        let turns: Vec<_> = turns(&way.map(at))
-            .into_iter()
-            .map(|v| (v.x, v.y, v.z))
-            .collect();
-        let expected = [
-            (0, 0, 0),
-            (3, 0, 0),
-            (3, 1, 0),
-            (3, 1, 1),
-            (3, 1, 0),
-            (3, 0, 0),
-            (2, 0, 0),
-        ];
-        assert_eq!(turns, expected);
-        assert!(super::turns(&[]).is_empty());
-    }
 
     /// A degree is 111,319.49 m, and half of that along the parallel of 60° north.
     #[test]

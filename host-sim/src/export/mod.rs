@@ -1,7 +1,11 @@
-//! What other programs open: missions for autopilots, and maps as point clouds.
+//! What other programs open: missions and trajectories for autopilots, maps as point clouds.
 
 mod mission;
 mod ply;
+mod trajectory;
+mod way;
 
-pub use mission::{Home, plan, way_in_metres, waypoints};
+pub use mission::{Home, plan, waypoints};
 pub use ply::ply;
+pub use trajectory::{Segment, segments, trajectory};
+pub use way::{among_voxels, over_heights};

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::record::{self, Deed, Format, Kind};
 use crate::scenario::Conditions;
 use crate::scenario::heights::{Planner, Scenario};
-use crate::terrain::Terrain;
+use crate::terrain::{Scale, Terrain};
 
 /// One decision of one robot: `at` is where it was after it, `goal` the frontier that it
 /// announced.
@@ -215,6 +215,8 @@ struct Header {
 #[derive(Serialize, Deserialize)]
 struct Ground {
     name: String,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scale: Option<Scale>,
     /// In quarters of a cell, row by row.
     heights: Vec<Vec<u8>>,
 }
@@ -244,6 +246,7 @@ impl Ground {
         };
         Self {
             name: terrain.name().into(),
+            scale: terrain.scale(),
             heights: (0..height as i16).map(row).collect(),
         }
     }

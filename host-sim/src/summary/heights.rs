@@ -32,6 +32,13 @@ pub struct Summary {
     pub range: f32,
     /// Longest flight in a step, in cells.
     pub step: f32,
+    /// Side of a column in metres, where the terrain says so.
+    pub cell_size: Option<f64>,
+    /// How fast robots fly, in metres a second, if that was said.
+    pub speed: Option<f64>,
+    /// How long the run took at that speed, each step as long as the longest flight that it may
+    /// have.
+    pub seconds: Option<f64>,
     /// Share of steps slept through, 0 to 1.
     pub skip: f64,
     /// Robot by robot.
@@ -49,6 +56,8 @@ pub struct RobotSummary {
     pub blocked_steps: u32,
     /// Length of its way, in cells.
     pub distance: f64,
+    /// The same in metres, where the terrain has metres.
+    pub metres: Option<f64>,
     /// Columns on its own map.
     pub cells_known: u32,
     /// Its reward over the run [Renzaglia2019 eq. 1].
@@ -101,8 +110,22 @@ impl Summary {
             planner: scenario.planner,
             range: scenario.limits.range,
             step: scenario.limits.step,
+            cell_size: trace.terrain.scale().map(|scale| scale.cell),
+            speed: None,
+            seconds: None,
             skip: scenario.skip,
             robots,
+        }
+    }
+
+    /// The same with the seconds that steps take at `speed`, in metres a second.
+    pub fn at_speed(self, speed: Option<f64>) -> Self {
+        let step = self.cell_size.zip(speed);
+        let step = step.map(|(cell, speed)| f64::from(self.step) * cell / speed);
+        Self {
+            speed,
+            seconds: step.map(|seconds| seconds * f64::from(self.head.ticks)),
+            ..self
         }
     }
 }
@@ -112,6 +135,7 @@ impl RobotSummary {
         let count = |deed| trace.of(robot).filter(|r| r.deed == deed).count() as u32;
         let way = trace.way(robot, u32::MAX);
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
+        let distance = legs.sum();
         let start = trace.starts[robot];
         let stop = trace.stops[robot];
         let faults = &trace.scenario.conditions.faults;
@@ -120,7 +144,8 @@ impl RobotSummary {
             start: (start.x, start.y, start.z),
             steps: count(Deed::Flew),
             blocked_steps: count(Deed::Refused),
-            distance: legs.sum(),
+            distance,
+            metres: trace.terrain.scale().map(|scale| distance * scale.cell),
             cells_known: trace.of(robot).last().map_or(0, |record| record.known),
             reward: trace.of(robot).map(|record| f64::from(record.gain)).sum(),
             work: trace.of(robot).map(|record| u64::from(record.work)).sum(),

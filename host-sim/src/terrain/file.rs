@@ -1,17 +1,20 @@
-//! Terrains out of files: grey images, OctoMap trees and ASCII grids, told apart by their content.
+//! Terrains out of files: grey images, OctoMap trees, GeoTIFFs and ASCII grids, told apart by
+//! their content.
 
 use std::io::{self, Cursor};
 use std::path::Path;
 
-use image::ImageFormat;
 use image::io::{Limits, Reader as ImageReader};
+use image::{ColorType, ImageFormat};
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent};
 use thiserror::Error;
 
-use super::Terrain;
 use super::foreign::foreign;
+use super::geotiff::{from_tiff, is_tiff};
 use super::grid::{from_grid, is_grid};
+use super::relief::from_metres;
+use super::{Scale, Terrain, TerrainOptions};
 use crate::bytes::{self, Unread};
 use crate::pixels;
 use crate::scene::octree::{Cube, OcTree};
@@ -59,10 +62,25 @@ pub enum TerrainError {
     Size { width: u32, height: u32 },
     #[error(
         "the pixel in column {x}, row {y} is {what}; expected shades of grey from 0 to 255, \
-         which are heights in quarters of a cell, in every pixel: `magick IN -alpha off \
-         -colorspace gray -depth 8 OUT.png`"
+         which are heights in quarters of a cell, or of 16 bits with --metres-per-level, in every \
+         pixel: `magick IN -alpha off -colorspace gray -depth 8 OUT.png`"
     )]
     Pixel { x: u32, y: u32, what: &'static str },
+    #[error("is a TIFF: {0}")]
+    Tiff(String),
+    #[error("does not say how wide its cells are; give --metres-per-cell M")]
+    NoCell,
+    #[error("{option} does not apply to {what}; leave it out")]
+    DoesNotApply {
+        option: &'static str,
+        what: &'static str,
+    },
+    #[error("{option} {found}: expected {expected}")]
+    Setting {
+        option: &'static str,
+        found: f64,
+        expected: &'static str,
+    },
     #[error("line {line} of the ASCII grid: expected {expected}")]
     Grid { line: usize, expected: String },
     #[error(
@@ -80,8 +98,8 @@ pub enum TerrainError {
 }
 
 /// What is read.
-const READ: &str = "a grey PNG or PGM, whose shades are heights in quarters of a cell, or an \
-                    OctoMap .bt or .ot tree, or an ESRI ASCII grid of metres";
+const READ: &str = "a grey PNG or PGM, whose shades are heights in quarters of a cell, an \
+                    OctoMap .bt or .ot tree, or a GeoTIFF or an ESRI ASCII grid of metres";
 
 impl From<Unread> for TerrainError {
     fn from(unread: Unread) -> Self {
@@ -99,11 +117,11 @@ impl Terrain {
     ///
     /// # Errors
     /// [`TerrainError`] says what is wrong and what to do.
-    pub fn read(path: &Path) -> Result<Self, TerrainError> {
+    pub fn read(path: &Path, options: &TerrainOptions) -> Result<Self, TerrainError> {
         let bytes = bytes::read(path, MOST_BYTES)?;
         let ending = path.extension().unwrap_or_default().to_string_lossy();
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
-        Ok(Self::from_bytes(&bytes, &ending)?.named(name))
+        Ok(Self::from_bytes_with(&bytes, &ending, options)?.named(name))
     }
 
     /// A terrain out of what a file holds; the `ending` of its name, without the dot,
@@ -112,17 +130,36 @@ impl Terrain {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn from_bytes(bytes: &[u8], ending: &str) -> Result<Self, TerrainError> {
+        Self::from_bytes_with(bytes, ending, &TerrainOptions::default())
+    }
+
+    /// The same with what is said of its metres.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn from_bytes_with(
+        bytes: &[u8],
+        ending: &str,
+        options: &TerrainOptions,
+    ) -> Result<Self, TerrainError> {
         if bytes.is_empty() {
             return Err(TerrainError::Empty);
         }
         if OcTree::is_tree(bytes) {
+            options.check_none("an OctoMap tree, which has metres")?;
             return from_tree(&OcTree::read(bytes).map_err(TerrainError::BrokenTree)?);
         }
         if is_grid(bytes) {
+            options.check_none("an ASCII grid, which has metres")?;
             return from_grid(bytes);
         }
+        if is_tiff(bytes) {
+            return from_tiff(bytes, options);
+        }
         match image::guess_format(bytes) {
-            Ok(format @ (ImageFormat::Png | ImageFormat::Pnm)) => from_image(bytes, format),
+            Ok(format @ (ImageFormat::Png | ImageFormat::Pnm)) => {
+                from_image(bytes, format, options)
+            }
             _ => Err(match foreign(bytes, ending) {
                 Some(it) => TerrainError::Foreign {
                     name: it.name,
@@ -134,7 +171,11 @@ impl Terrain {
     }
 }
 
-fn from_image(bytes: &[u8], format: ImageFormat) -> Result<Terrain, TerrainError> {
+fn from_image(
+    bytes: &[u8],
+    format: ImageFormat,
+    options: &TerrainOptions,
+) -> Result<Terrain, TerrainError> {
     let size = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions();
     // Before a picture is decoded that is a few bytes of file and gigabytes of pixels.
     let extent = fitting(size.map_err(TerrainError::BrokenImage)?)?;
@@ -142,6 +183,8 @@ fn from_image(bytes: &[u8], format: ImageFormat) -> Result<Terrain, TerrainError
     limits.max_image_width = Some(LARGEST);
     limits.max_image_height = Some(LARGEST);
     let image = pixels::decode(bytes, format, limits).map_err(TerrainError::BrokenImage)?;
+    use ColorType::{L16, La16, Rgb16, Rgba16};
+    let is_deep = matches!(image.color(), L16 | La16 | Rgb16 | Rgba16);
     let image = image.into_rgba16();
     for (x, y, pixel) in image.enumerate_pixels() {
         let [red, green, blue, alpha] = pixel.0;
@@ -149,15 +192,26 @@ fn from_image(bytes: &[u8], format: ImageFormat) -> Result<Terrain, TerrainError
             () if alpha != u16::MAX => "transparent",
             () if red != green || green != blue => "coloured",
             // Of 16 bits, those are left that are 8 bits too.
-            () if red % 257 != 0 => "a shade between two of these",
+            () if red % 257 != 0 && options.metres_per_level.is_none() => {
+                "a shade between two of these"
+            }
             () => continue,
         };
         return Err(TerrainError::Pixel { x, y, what });
     }
     let shade = |cell: Cell| image.get_pixel(cell.x as u32, cell.y as u32).0[0];
-    Ok(Terrain::from_fn(extent, |cell| {
-        Height((shade(cell) / 257) as u8)
-    }))
+    let Some(level) = options.metres_per_level else {
+        let terrain = Terrain::from_fn(extent, |cell| Height((shade(cell) / 257) as u8));
+        return Ok(terrain.scaled(options.metres_per_cell.map(Scale::picture)));
+    };
+    let cell = options.metres_per_cell.ok_or(TerrainError::NoCell)?;
+    // Of 8 bits, each shade has become 257 of 16.
+    let level = if is_deep { level } else { level / 257.0 };
+    let metres: Vec<f64> = image
+        .pixels()
+        .map(|pixel| f64::from(pixel.0[0]) * level)
+        .collect();
+    from_metres(extent, &metres, cell)
 }
 
 /// The highest occupied voxel of each column, over the lowest of all.
@@ -190,9 +244,15 @@ fn from_tree(tree: &OcTree) -> Result<Terrain, TerrainError> {
             }
         }
     }
-    Ok(Terrain::from_fn(extent, |cell| {
+    let terrain = Terrain::from_fn(extent, |cell| {
         heights[cell.y as usize * usize::from(extent.width) + cell.x as usize]
-    }))
+    });
+    let cell = tree.resolution();
+    Ok(terrain.scaled(Some(Scale {
+        cell,
+        corner: [west, north, floor].map(|at| f64::from(at) * cell),
+        northward: true,
+    })))
 }
 
 pub(super) fn fitting((width, height): (u32, u32)) -> Result<Extent, TerrainError> {
@@ -249,6 +309,44 @@ mod tests {
         assert!(error(&png(fine), "png").contains("column 0, row 0 is a shade between"));
     }
 
+    /// Of 8 and of 16 bits; the lowest is 0.
+    #[test]
+    fn levels_are_metres_where_they_are_said() {
+        let said = TerrainOptions {
+            metres_per_cell: Some(2.0),
+            metres_per_level: Some(0.5),
+        };
+        let grey = GrayImage::from_fn(3, 1, |x, _| Luma([10 + 2 * x as u8]));
+        let deep = ImageBuffer::from_fn(3, 1, |x, _| Luma([1010 + 2 * x as u16]));
+        for bytes in [png(grey.clone()), png(deep)] {
+            let terrain = Terrain::from_bytes_with(&bytes, "", &said).unwrap();
+            let heights: Vec<_> = terrain.cells().map(|at| terrain.height(at)).collect();
+            assert_eq!(heights, [0, 2, 4].map(|quarters| Some(Height(quarters))));
+            assert_eq!(terrain.scale(), Some(Scale::picture(2.0)));
+        }
+        let cell = TerrainOptions {
+            metres_per_level: None,
+            ..said
+        };
+        let terrain = Terrain::from_bytes_with(&png(grey.clone()), "", &cell).unwrap();
+        assert_eq!(terrain.height(Cell::new(0, 0)), Some(Height(10)));
+        assert_eq!(terrain.scale(), Some(Scale::picture(2.0)));
+        let level = TerrainOptions {
+            metres_per_cell: None,
+            ..said
+        };
+        let error = |bytes: &[u8]| {
+            let read = Terrain::from_bytes_with(bytes, "", &level);
+            read.unwrap_err().to_string()
+        };
+        assert!(error(&png(grey)).contains("give --metres-per-cell"));
+        let grid = b"ncols 1\nnrows 1\ncellsize 1\n5\n";
+        assert!(error(grid).contains("--metres-per-level does not apply to an ASCII grid"));
+        let mut tree = Vec::new();
+        OcTree::new(1.0).write(&mut tree).unwrap();
+        assert!(error(&tree).contains("does not apply to an OctoMap tree"));
+    }
+
     #[test]
     fn pictures_too_large_are_refused_by_their_header() {
         // 20,000×20,000 pixels without their data.
@@ -286,7 +384,6 @@ mod tests {
             (b"v 0 0 0", "obj", ["OBJ", "binvox2bt"]),
             (b"BM\x01", "png", ["a BMP", "magick"]),
             (b"\xff\xd8\xff\xe0", "png", ["a JPEG", "magick"]),
-            (b"II*\0", "tif", ["a TIFF", "gdal_translate"]),
             (b"image: a.pgm", "yaml", ["a flat map", "host-sim explore"]),
             (b"\x1f\x8b\x08", "gz", ["compressed", "unpack"]),
             (b"?", "xyzzy", ["no format that is known", "grey PNG"]),
@@ -313,6 +410,7 @@ mod tests {
         let terrain = read(&[[0, 0, 0], [3, 1, 4]]).unwrap();
         assert_eq!(terrain.extent(), Extent::new(4, 2));
         assert_eq!(terrain.height(Cell::new(3, 1)), Some(Height(20)));
+        assert_eq!(terrain.scale().map(|scale| scale.cell), Some(0.5));
         assert!(read(&[[0, 0, 0], [0, 0, 62]]).is_ok());
         assert!(
             read(&[[0, 0, 0], [0, 0, 63]])

@@ -23,7 +23,7 @@ const MAP: &str = "`host-sim explore` reads it; a survey needs heights";
 const PACKED: &str = "unpack it and give the file in it";
 
 /// What files begin with.
-const BEGINNINGS: [(&[u8], &str, &str); 23] = [
+const BEGINNINGS: [(&[u8], &str, &str); 21] = [
     (b"# .PCD", "a PCD point cloud", SCENE),
     (b"VERSION .7", "a PCD point cloud", SCENE),
     (b"VERSION 0.7", "a PCD point cloud", SCENE),
@@ -39,8 +39,6 @@ const BEGINNINGS: [(&[u8], &str, &str); 23] = [
     (b"\xff\xd8\xff", "a JPEG picture", GREYS),
     (b"BM", "a BMP picture", GREYS),
     (b"GIF8", "a GIF picture", GREYS),
-    (b"II*\0", "a TIFF picture", RASTER),
-    (b"MM\0*", "a TIFF picture", RASTER),
     (b"RIFF", "a WebP picture", GREYS),
     (b"%PDF", "a PDF document", GREYS),
     (

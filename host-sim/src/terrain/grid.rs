@@ -1,10 +1,9 @@
 //! Elevation models as ESRI ASCII grids: a header of `ncols`, `nrows`, a corner, `cellsize`
 //! and perhaps `NODATA_value`, then the heights in metres, row by row from the north.
 
-use planner_core::surface::Height;
-
 use super::Terrain;
-use super::file::{HIGHEST, TerrainError, fitting};
+use super::file::{TerrainError, fitting};
+use super::relief::from_metres;
 
 /// First word of such a file, in any case.
 const FIRST: &str = "ncols";
@@ -80,17 +79,7 @@ pub(super) fn from_grid(bytes: &[u8]) -> Result<Terrain, TerrainError> {
         let (cells, found) = (extent.cells(), metres.len());
         return Err(wrong(last, format!("{cells} heights in all, not {found}")));
     }
-    let low = metres.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = metres.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let relief = (high - low) / side;
-    if relief > f64::from(HIGHEST) {
-        return Err(TerrainError::Relief { relief });
-    }
-    let width = usize::from(extent.width);
-    Ok(Terrain::from_fn(extent, |cell| {
-        let metres = metres[cell.y as usize * width + cell.x as usize];
-        Height::from_cells(((metres - low) / side) as f32)
-    }))
+    from_metres(extent, &metres, side)
 }
 
 #[cfg(test)]

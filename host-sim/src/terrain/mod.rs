@@ -2,8 +2,11 @@
 
 mod file;
 mod foreign;
+mod geotiff;
 mod grid;
 mod look;
+mod relief;
+mod scale;
 mod source;
 
 use planner_core::surface::Height;
@@ -14,13 +17,15 @@ use crate::dice::Dice;
 pub(crate) use file::LARGEST;
 pub use file::TerrainError;
 pub use look::look;
+pub use scale::{Scale, TerrainOptions};
 pub use source::TerrainSource;
 
 /// A height field; heights in cells.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
     name: String,
     extent: Extent,
+    scale: Option<Scale>,
     heights: Vec<Height>,
 }
 
@@ -31,8 +36,14 @@ impl Terrain {
         Self {
             name: "terrain".into(),
             extent,
+            scale: None,
             heights,
         }
+    }
+
+    /// The same with columns in metres.
+    pub fn scaled(self, scale: Option<Scale>) -> Self {
+        Self { scale, ..self }
     }
 
     /// The same by another name.
@@ -120,6 +131,11 @@ impl Terrain {
             }
         })
         .named(format!("urban-{seed}"))
+    }
+
+    /// Its metres, if anything says them.
+    pub fn scale(&self) -> Option<Scale> {
+        self.scale
     }
 
     /// Size in columns.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use super::Terrain;
+use super::{Scale, Terrain, TerrainError, TerrainOptions};
 use crate::scene::Scene;
 
 /// Where a terrain comes from.
@@ -15,9 +15,8 @@ pub enum TerrainSource {
     Urban(u64),
     /// A town of voxels drawn by a seed: see [`TerrainSource::scene`].
     Town(u64),
-    /// An image whose grey values are heights in quarters of a cell, an ESRI ASCII grid of
-    /// metres, or an OctoMap tree, of which the highest occupied voxel of each column counts: see
-    /// [`Terrain::read`].
+    /// A picture, an elevation model in metres, or an OctoMap tree, of which the highest
+    /// occupied voxel of each column counts: see [`Terrain::read`].
     File(PathBuf),
 }
 
@@ -49,13 +48,34 @@ impl TerrainSource {
     }
 
     /// The terrain; a drawn one has `side`×`side` columns.
+    ///
+    /// # Errors
+    /// The file is no terrain, or this is one of voxels.
     pub fn load(&self, side: u16) -> Result<Terrain, String> {
+        self.load_with(side, &TerrainOptions::default())
+    }
+
+    /// The same with what is said of its metres.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load); or an option that does not apply.
+    pub fn load_with(&self, side: u16, options: &TerrainOptions) -> Result<Terrain, String> {
+        options.check().map_err(|error| error.to_string())?;
+        let drawn = |terrain: Terrain| match options.metres_per_level {
+            None => Ok(terrain.scaled(options.metres_per_cell.map(Scale::picture))),
+            Some(_) => Err(TerrainError::DoesNotApply {
+                option: "--metres-per-level",
+                what: "a terrain drawn by a seed",
+            }
+            .to_string()),
+        };
         match self {
-            Self::Gaussian(seed) => Ok(Terrain::gaussian(*seed, side)),
+            Self::Gaussian(seed) => drawn(Terrain::gaussian(*seed, side)),
             Self::Town(_) => Err("a town has several voxels in a column".into()),
-            Self::Urban(seed) => Ok(Terrain::urban(*seed, side)),
+            Self::Urban(seed) => drawn(Terrain::urban(*seed, side)),
             Self::File(path) => {
-                Terrain::read(path).map_err(|error| format!("{}: {error}", path.display()))
+                let terrain = Terrain::read(path, options);
+                terrain.map_err(|error| format!("{}: {error}", path.display()))
             }
         }
     }

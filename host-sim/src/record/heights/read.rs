@@ -239,7 +239,9 @@ impl Ground {
         }
         let height_at = |cell: Cell| Height(rows[cell.y as usize][cell.x as usize]);
         let extent = Extent::new(width as u16, height as u16);
-        Ok(Terrain::from_fn(extent, height_at).named(self.name))
+        Ok(Terrain::from_fn(extent, height_at)
+            .named(self.name)
+            .scaled(self.scale))
     }
 }
 

@@ -1,0 +1,130 @@
+//! What a survey came to, in words.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use host_sim::scene::Free;
+use host_sim::summary::Head;
+use host_sim::summary::heights::Summary;
+use host_sim::summary::voxels::Summary as VoxelSummary;
+
+/// The exit status; says what is left, if something is.
+pub(super) fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
+    if head.complete {
+        return ExitCode::SUCCESS;
+    }
+    eprintln!(
+        "not complete: {} of {} {places} unseen after {} steps, {violations} violations",
+        head.reachable_cells - head.seen_cells,
+        head.reachable_cells,
+        head.ticks,
+    );
+    ExitCode::FAILURE
+}
+
+fn after(ticks: Option<u32>) -> String {
+    ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"))
+}
+
+pub(super) fn print(summary: &Summary, out: &Path) {
+    print_head(
+        &summary.head,
+        "columns",
+        summary.ticks_to_95,
+        summary.violations,
+    );
+    for (number, robot) in summary.robots.iter().enumerate() {
+        println!(
+            "  robot {number:<3} {:>6} steps, {:>6} columns known, {:>5} frames of {:>7} bytes sent, {}",
+            robot.steps,
+            robot.cells_known,
+            robot.frames_sent,
+            robot.bytes_sent,
+            state(robot.alive, robot.stop_reason.as_deref()),
+        );
+    }
+    print_metres(
+        summary.seconds.zip(summary.speed),
+        summary.robots.iter().filter_map(|robot| robot.metres),
+    );
+    print_end(&summary.head, out);
+}
+
+pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
+    let places = "visible voxels";
+    print_head(
+        &summary.head,
+        places,
+        summary.ticks_to_95,
+        summary.violations,
+    );
+    for (number, robot) in summary.robots.iter().enumerate() {
+        println!(
+            "  robot {number:<3} {:>6} steps, {:>6} voxels known, {:>5} frames of {:>7} bytes sent, {}",
+            robot.steps,
+            robot.cells_known,
+            robot.frames_sent,
+            robot.bytes_sent,
+            state(robot.alive, robot.stop_reason.as_deref()),
+        );
+    }
+    print_metres(
+        summary.seconds.zip(summary.speed),
+        summary.robots.iter().filter_map(|robot| robot.metres),
+    );
+    if let Some(free) = summary.free_space {
+        let what = match free {
+            Free::Rest => "taken for free where the file has nothing",
+            Free::Rays => "free along the rays from the viewpoint",
+        };
+        println!("  free space         {what}");
+    }
+    if summary.edge_cells > 0 {
+        println!(
+            "  end of the scene   {} voxels beside what was seen are unknown in the file",
+            summary.edge_cells
+        );
+    }
+    print_end(&summary.head, out);
+}
+
+fn print_head(head: &Head, places: &str, ticks_to_95: Option<u32>, violations: u32) {
+    let Head {
+        map,
+        seen_cells,
+        reachable_cells,
+        ..
+    } = head;
+    println!("{map}: {seen_cells} of {reachable_cells} {places} seen");
+    println!("  95 % seen          {}", after(ticks_to_95));
+    println!("  everything seen    {}", after(head.ticks_to_seen));
+    println!("  every robot done   {}", after(head.ticks_to_stopped));
+    println!(
+        "  most work          {} in one tick",
+        head.max_work_per_tick
+    );
+    println!("  violations         {violations}");
+}
+
+/// Seconds and speed, and the lengths of all ways, where there are any.
+fn print_metres(time: Option<(f64, f64)>, ways: impl Iterator<Item = f64>) {
+    if let Some((seconds, speed)) = time {
+        println!("  time               {seconds:.0} s at {speed} m/s");
+    }
+    if let Some(most) = ways.reduce(f64::max) {
+        println!("  longest way        {most:.1} m");
+    }
+}
+
+fn print_end(head: &Head, out: &Path) {
+    println!("  trace digest       {}", head.trace_digest);
+    println!("  results            {}", out.display());
+}
+
+fn state(alive: bool, stop: Option<&str>) -> &str {
+    match stop {
+        _ if !alive => "died",
+        Some(reason) => reason,
+        None => "had not stopped",
+    }
+}

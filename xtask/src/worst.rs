@@ -117,6 +117,15 @@ impl Figures {
             "worst_cao_step_instructions".into(),
             self.figure("cao_step")?,
         ));
+        let mut stack = 0;
+        for call in ["observe", "tick", "transmit", "receive"] {
+            measured.push((
+                format!("worst_voxel_survey_{call}_instructions"),
+                self.figure(&format!("voxel_survey_{call}"))?,
+            ));
+            stack = stack.max(self.figure(&format!("voxel_survey_{call}_stack"))?);
+        }
+        measured.push(("worst_voxel_survey_stack_bytes".into(), stack));
         let (work, bound) = (self.explorer("work")?, self.explorer("work_bound")?);
         if work > bound {
             bail!("a tick of the explorer counts {work} of work; Config::work_bound says {bound}");

@@ -1,9 +1,16 @@
 //! The nearest pose far away that is not done: a wave over all poses, in slices.
 
-use super::gain::RAY;
 use super::{SLICE, VoxelSurvey, WAY};
 use crate::tile::TileIndex;
 use crate::volume::{Layer, Volume, Voxel, beside};
+
+/// Work of a word that the wave may enter, and of a step back.
+const WORD: u32 = 4;
+const BACK: u32 = 16;
+
+/// The northernmost and the southernmost row of a tile.
+const FIRST_ROW: u64 = 0xff;
+const LAST_ROW: u64 = FIRST_ROW << 56;
 
 /// What a step of the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,10 +44,12 @@ pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     high: Layer<TW, TH, L>,
     /// The distance modulo 3 of what is reached next.
     layer: u8,
-    /// Where the look at all words for it stands.
+    /// Rows of tiles of each level that the wave may enter now, and those behind them. Only
+    /// beside what it reached last.
+    rows: [u64; L],
+    next_rows: [u64; L],
+    /// Where the look at them stands.
     cursor: (TileIndex, u8),
-    /// Whether anything was reached in it.
-    grows: bool,
     /// Poses of the word at the cursor that are left to rivals.
     passed: u64,
     /// The first pose of all that shows something and is left to a rival.
@@ -55,8 +64,9 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             low: Layer::EMPTY,
             high: Layer::EMPTY,
             layer: 0,
+            rows: [0; L],
+            next_rows: [0; L],
             cursor: (TileIndex { x: 0, y: 0 }, 0),
-            grows: false,
             passed: 0,
             spare: None,
         }
@@ -72,8 +82,9 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.low.reset();
         self.high.reset();
         self.layer = 1;
+        self.rows.fill(0);
+        self.next_rows.fill(0);
         self.cursor = (TileIndex { x: 0, y: 0 }, 0);
-        self.grows = false;
         self.passed = 0;
         self.spare = None;
     }
@@ -81,7 +92,64 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
     fn begin(&mut self, from: Voxel, known: u32) {
         self.reset();
         self.stage = Stage::Wave { known };
-        self.low.set(from);
+        if let Some((tile, z, bit)) = from.place() {
+            self.low.add(tile, z, bit);
+            self.enter(tile, z, bit);
+        }
+        self.rows = self.next_rows;
+        self.next_rows.fill(0);
+        self.find_row(0, 0);
+    }
+
+    /// The wave goes on in the rows of tiles beside `new` of a tile of a level.
+    fn enter(&mut self, tile: TileIndex, z: u8, new: u64) {
+        let row = 1u64.checked_shl(tile.y.into()).unwrap_or(0);
+        let mut own = row;
+        if new & FIRST_ROW != 0 {
+            own |= row >> 1;
+        }
+        if new & LAST_ROW != 0 {
+            own |= row << 1;
+        }
+        let rows = [(z, own), (z.wrapping_add(1), row), (z.wrapping_sub(1), row)];
+        for (z, rows) in rows {
+            if let Some(place) = self.next_rows.get_mut(usize::from(z)) {
+                *place |= rows;
+            }
+        }
+    }
+
+    /// Puts the cursor at the first row to be looked at from row `y` of level `z` on; says
+    /// whether there is one.
+    fn find_row(&mut self, y: u8, z: u8) -> bool {
+        let mut from = u64::MAX.checked_shl(y.into()).unwrap_or(0);
+        for (z, &rows) in (0u8..).zip(&self.rows).skip(z.into()) {
+            let rows = rows & from;
+            if rows != 0 {
+                self.cursor = (TileIndex::new(0, rows.trailing_zeros() as u8), z);
+                return true;
+            }
+            from = u64::MAX;
+        }
+        false
+    }
+
+    /// Puts the cursor at the next word to be looked at, of a map with so many columns of
+    /// tiles: of this layer, or of the next one; says whether there is one.
+    fn advance(&mut self, columns: u8) -> bool {
+        self.passed = 0;
+        let (tile, z) = self.cursor;
+        if tile.x.saturating_add(1) < columns {
+            self.cursor.0.x += 1;
+            return true;
+        }
+        if self.find_row(tile.y.saturating_add(1), z) {
+            return true;
+        }
+        self.rows = self.next_rows;
+        self.next_rows.fill(0);
+        self.layer = (self.layer + 1) % 3;
+        self.find_row(0, 0)
     }
 
     /// Distance of `voxel` from the robot modulo 3, if it is reached.
@@ -92,31 +160,35 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
 
     /// What is reached of a tile of a level at `distance` modulo 3.
     fn at(&self, distance: u8, tile: TileIndex, z: u8) -> u64 {
-        let (low, high) = (self.low.word(tile, z), self.high.word(tile, z));
-        match distance {
-            0 => low & !high,
-            1 => high & !low,
-            _ => low & high,
-        }
+        // The two bits of it, each the other way where it is 0.
+        let [low, high] = match distance {
+            0 => [0, u64::MAX],
+            1 => [u64::MAX, 0],
+            _ => [0, 0],
+        };
+        (self.low.word(tile, z) ^ low) & (self.high.word(tile, z) ^ high)
     }
 
     /// Lets the wave into the word at the cursor, but not into `closed` voxels.
     fn spread_into_tile(&mut self, volume: &Volume<TW, TH, L>, closed: &Layer<TW, TH, L>) {
         let (tile, z) = self.cursor;
         let reached = self.low.word(tile, z) | self.high.word(tile, z);
-        let before = |tile, z| self.at((self.layer + 2) % 3, tile, z);
-        let next = beside(tile, z, before);
+        let before = (self.layer + 2) % 3;
+        let next = beside(tile, z, |tile, z| self.at(before, tile, z)) & !reached;
         if next == 0 {
             return;
         }
-        let new = next & !reached & volume.poses(tile, z) & !closed.word(tile, z);
+        let new = next & volume.poses(tile, z) & !closed.word(tile, z);
+        if new == 0 {
+            return;
+        }
         if self.layer != 1 {
             self.low.add(tile, z, new);
         }
         if self.layer != 0 {
             self.high.add(tile, z, new);
         }
-        self.grows |= new != 0;
+        self.enter(tile, z, new);
     }
 }
 
@@ -134,8 +206,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     fn spread(&mut self, known: u32) -> Found {
+        let (columns, _) = self.volume.extent().tiles();
         while self.work < SLICE {
-            self.work = self.work.saturating_add(1);
+            self.work = self.work.saturating_add(WORD);
             self.far.spread_into_tile(&self.volume, &self.closed);
             let (tile, z) = self.far.cursor;
             let reached = self.far.at(self.far.layer, tile, z);
@@ -158,30 +231,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 }
                 continue;
             }
-            self.far.passed = 0;
-            self.far.cursor = self.volume.after(tile, z);
-            if self.far.cursor == (TileIndex { x: 0, y: 0 }, 0) {
-                if !self.far.grows {
-                    self.far.stage = Stage::Idle;
-                    if let Some(spare) = self.far.spare.take() {
-                        // Rivals may be lost: what they leave over is nobody's. Unless
-                        // it shows nothing by now: then the search begins anew.
-                        return if self.gain(spare, 1) > 0 {
-                            self.found(spare)
-                        } else {
-                            Found::Searching
-                        };
-                    }
-                    // What was learnt meanwhile may have opened a way.
-                    return if known == self.volume.known_voxels() {
-                        Found::Nothing
-                    } else {
-                        Found::Searching
-                    };
-                }
-                self.far.grows = false;
-                self.far.layer = (self.far.layer + 1) % 3;
+            if self.far.advance(columns) {
+                continue;
             }
+            self.far.stage = Stage::Idle;
+            if let Some(spare) = self.far.spare.take() {
+                // Rivals may be lost: what they leave over is nobody's. Unless it shows
+                // nothing by now: then the search begins anew.
+                return if self.gain(spare, 1) > 0 {
+                    self.found(spare)
+                } else {
+                    Found::Searching
+                };
+            }
+            // What was learnt meanwhile may have opened a way.
+            return if known == self.volume.known_voxels() {
+                Found::Nothing
+            } else {
+                Found::Searching
+            };
         }
         Found::Searching
     }
@@ -197,7 +265,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn follow_back(&mut self, from: Voxel) -> Found {
         let mut at = from;
         while self.work < SLICE {
-            self.work = self.work.saturating_add(RAY);
+            self.work = self.work.saturating_add(BACK);
             if at == self.position {
                 self.far.stage = Stage::Idle;
                 return Found::Way;

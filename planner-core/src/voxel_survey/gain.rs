@@ -1,18 +1,17 @@
 //! What a pose would show.
 
+use core::ops::ControlFlow;
+
 use super::VoxelSurvey;
 use crate::tile::{TileIndex, bits};
-use crate::volume::{Content, Voxel, in_sight};
-
-/// Words that a ray looks at, about.
-pub(super) const RAY: u32 = 16;
+use crate::volume::{View, Voxel};
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Number of unknown voxels in sight of `pose` where unknown voxels do not block
     /// sight, at most `enough`. At 0 the pose is done.
     ///
-    /// Cost: every tile of a level within range, and a ray for each unknown voxel until
-    /// there are enough.
+    /// Cost: every tile of a level within range; a view, and its rays, if something there is
+    /// unknown.
     pub(super) fn gain(&mut self, pose: Voxel, enough: u32) -> u32 {
         let gain = self.count(pose, enough);
         if gain == 0 {
@@ -21,68 +20,47 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         gain
     }
 
+    // Not in line: one view at a time is on the stack.
+    #[inline(never)]
     fn count(&mut self, pose: Voxel, enough: u32) -> u32 {
+        let volume = &self.volume;
+        let mut view = View::new(pose, self.range);
         let mut gain = 0u32;
-        for (tile, z) in self.words_within_range(pose) {
-            self.work = self.work.saturating_add(1);
-            for voxel in voxels(tile, z, self.volume.unknown(tile, z)) {
-                if !self.is_in_range(pose, voxel) {
-                    continue;
-                }
-                self.work = self.work.saturating_add(RAY);
-                let is_clear = |at| self.volume.content(at) != Content::Occupied;
-                gain = gain.saturating_add(in_sight(pose, voxel, is_clear).into());
-                if gain >= enough {
-                    return gain;
-                }
-            }
+        if view.aim(|tile, z| volume.unknown(tile, z)) {
+            view.block(|tile, z| volume.occupied(tile, z));
+            let _ = view.look(
+                |tile, z| volume.unknown(tile, z),
+                |row| {
+                    gain = gain.saturating_add(row.count());
+                    if gain < enough {
+                        ControlFlow::Continue(())
+                    } else {
+                        ControlFlow::Break(())
+                    }
+                },
+            );
         }
-        gain
+        self.work = self.work.saturating_add(view.work);
+        gain.min(enough)
     }
 
     /// Notes the voxels that the look from here should have shown and did not: unknown
     /// ones beside a free one, in sight over free ones alone.
     ///
-    /// Cost: 14 words for every tile of a level within range, and a ray for each unknown
-    /// voxel beside a free one there.
+    /// Cost: 28 words for every tile of a level within range, and a view if any is new.
     pub(super) fn note_missed(&mut self) {
-        let here = self.position;
-        for (tile, z) in self.words_within_range(here) {
-            let unknown = self.volume.unknown_beside_free(tile, z);
-            for voxel in voxels(tile, z, unknown & !self.missed.word(tile, z)) {
-                let is_clear = |at| self.volume.content(at) == Content::Free;
-                if self.is_in_range(here, voxel) && in_sight(here, voxel, is_clear) {
-                    self.missed.set(voxel);
-                    self.has_missed = true;
-                }
-            }
+        let (volume, missed) = (&self.volume, &mut self.missed);
+        let unknown = |tile, z| volume.unknown_beside_free(tile, z);
+        let mut view = View::new(self.position, self.range);
+        if !view.aim(|tile, z| unknown(tile, z) & !missed.word(tile, z)) {
+            return;
         }
-    }
-
-    fn is_in_range(&self, pose: Voxel, voxel: Voxel) -> bool {
-        pose.distance_squared(voxel) <= u32::from(self.range) * u32::from(self.range)
-    }
-
-    /// The tiles of levels that have a voxel within range of `pose`, and a few more.
-    fn words_within_range(
-        &self,
-        pose: Voxel,
-    ) -> impl Iterator<Item = (TileIndex, u8)> + use<TW, TH, L> {
-        let reach = i16::from(self.range);
-        let span = move |at: i16, end: i16| {
-            let last = at.saturating_add(reach).min(end.saturating_sub(1));
-            at.saturating_sub(reach).max(0)..=last
-        };
-        let tiles = move |at: i16, end: u16| {
-            let cells = span(at, end as i16);
-            (cells.start() >> 3) as u8..=(cells.end() >> 3) as u8
-        };
-        let extent = self.volume.extent();
-        span(pose.z, self.volume.levels().into()).flat_map(move |z| {
-            tiles(pose.y, extent.height).flat_map(move |y| {
-                tiles(pose.x, extent.width).map(move |x| (TileIndex { x, y }, z as u8))
-            })
-        })
+        view.block(|tile, z| volume.bad(tile, z));
+        let _ = view.look(unknown, |row| {
+            self.has_missed = true;
+            row.voxels().for_each(|voxel| missed.set(voxel));
+            ControlFlow::Continue(())
+        });
     }
 }
 

@@ -22,10 +22,17 @@ const _: () = assert!(
     2 * WINDOW as u32 <= u32::BITS,
     "a row of the window is a u32"
 );
+const _: () = assert!(
+    WINDOW <= i8::MAX as i16,
+    "where a pose is in the window is an i8 each way"
+);
 const _: () = assert!(POSES <= u16::MAX as usize, "a pose's number is a u16");
 
 /// What a view is worth to which a rival is nearer.
 const RIVALS_SHARE: f32 = 0.25;
+
+/// Work of a voxel that is considered.
+const POSE: u32 = 4;
 
 /// Steps that a flight costs beside its length.
 const START: u32 = 2;
@@ -33,18 +40,48 @@ const START: u32 = 2;
 /// A pose that can be reached, and the number of the one before it.
 #[derive(Clone, Copy)]
 struct Place {
-    at: Voxel,
+    /// Where it is, seen from the robot.
+    offset: [i8; 3],
     before: u16,
     steps: u16,
+}
+
+impl Place {
+    const OWN: Self = Self {
+        offset: [0; 3],
+        before: 0,
+        steps: 0,
+    };
+
+    fn at(self, here: Voxel) -> Voxel {
+        let [x, y, z] = self.offset.map(i16::from);
+        Voxel::new(
+            here.x.saturating_add(x),
+            here.y.saturating_add(y),
+            here.z.saturating_add(z),
+        )
+    }
+
+    /// The next one, numbered `number`, to a voxel beside it.
+    fn next(self, number: u16, at: Voxel, here: Voxel) -> Self {
+        let offset = [(at.x, here.x), (at.y, here.y), (at.z, here.z)];
+        Self {
+            offset: offset.map(|(at, here)| at.saturating_sub(here) as i8),
+            before: number,
+            steps: self.steps.saturating_add(1),
+        }
+    }
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// A flight to the pose near by that shows the most for its distance; `None` if
     /// all poses near by are done.
     pub(super) fn look_near(&mut self) -> Option<Action<Voxel, Voxel>> {
-        let places = self.places();
+        let here = self.position;
+        let mut places = Vec::new();
+        self.find_places(&mut places);
         let best = loop {
-            let is_open = |place: &&Place| !self.done.get(place.at);
+            let is_open = |place: &&Place| !self.done.get(place.at(here));
             let open = places.iter().filter(is_open).count();
             if open == 0 {
                 return None;
@@ -60,7 +97,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         };
         self.way.clear();
         if let Some(goal) = places.get(usize::from(number)) {
-            self.goal = goal.at;
+            self.goal = goal.at(here);
         }
         for _ in 0..POSES {
             let Some(place) = places.get(usize::from(number)) else {
@@ -69,28 +106,33 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             if place.steps == 0 {
                 break;
             }
-            list::push_out(&mut self.way, place.at);
+            list::push_out(&mut self.way, place.at(here));
             number = place.before;
         }
         Some(self.follow().unwrap_or(Action::Wait))
     }
 
-    /// The number of the best of `places`, looked at in strides.
+    /// The number of the best of `places`, looked at in strides until the slice is used up.
     fn best_of(&mut self, places: &[Place], stride: usize) -> Option<u16> {
+        let here = self.position;
         let chosen: Vec<(u16, Place), VIEWS> = list::collect(
             (0u16..)
                 .zip(places)
-                .filter(|(_, place)| !self.done.get(place.at))
+                .filter(|(_, place)| !self.done.get(place.at(here)))
                 .step_by(stride.max(1))
                 .map(|(number, &place)| (number, place)),
         );
         let mut best: Option<(f32, u16)> = None;
         for &(number, place) in &chosen {
-            let gain = self.gain(place.at, ENOUGH);
+            if self.work >= super::SLICE {
+                break;
+            }
+            let at = place.at(here);
+            let gain = self.gain(at, ENOUGH);
             if gain == 0 {
                 continue;
             }
-            let share = if self.is_a_rivals(place.at) {
+            let share = if self.is_a_rivals(at) {
                 RIVALS_SHARE
             } else {
                 1.0
@@ -104,12 +146,13 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// The poses around the robot, nearest first, the robot's own in front.
-    fn places(&mut self) -> Vec<Place, POSES> {
-        let mut places = Vec::new();
+    // Not in line: its window would stay on the stack beside the views.
+    #[inline(never)]
+    fn find_places(&mut self, places: &mut Vec<Place, POSES>) {
         // One bit for each voxel of the window that was looked at.
         let mut seen = [[0u32; 2 * WINDOW as usize]; 2 * WINDOW as usize];
         let here = self.position;
-        let mut visit = move |at: Voxel| {
+        let mut visit = |at: Voxel| {
             let index =
                 |a: i16, b: i16| usize::try_from(a.saturating_sub(b).saturating_add(WINDOW));
             let (Ok(x), Ok(y), Ok(z)) = (
@@ -128,30 +171,20 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             is_new
         };
         visit(here);
-        let _ = places.push(Place {
-            at: here,
-            before: 0,
-            steps: 0,
-        });
+        let _ = places.push(Place::OWN);
         for number in 0..POSES {
             let Some(&place) = places.get(number) else {
                 break;
             };
-            for at in place.at.beside() {
-                if !visit(at) {
+            for at in place.at(here).beside() {
+                if places.is_full() || !visit(at) {
                     continue;
                 }
-                self.work = self.work.saturating_add(1);
+                self.work = self.work.saturating_add(POSE);
                 if self.volume.is_pose(at) && !self.closed.get(at) {
-                    // The nearest ones are kept.
-                    let _ = places.push(Place {
-                        at,
-                        before: number as u16,
-                        steps: place.steps.saturating_add(1),
-                    });
+                    let _ = places.push(place.next(number as u16, at, here));
                 }
             }
         }
-        places
     }
 }

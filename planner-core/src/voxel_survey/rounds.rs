@@ -38,7 +38,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// Nothing is left to fly to: what is closed is tried again, or the robot stops.
     pub(super) fn end_round(&mut self) -> Action<Voxel, Voxel> {
-        let frontiers = self.volume.frontiers();
         if self.is_closed {
             let known = self.volume.known_voxels();
             if known != self.round_known {
@@ -46,8 +45,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 self.round = 0;
             }
             if self.round >= ROUNDS {
-                let at = self.refused;
-                return self.stop(Stop::Blocked { frontiers, at });
+                return self.stop(Stop::Blocked {
+                    frontiers: self.volume.frontiers(),
+                    at: self.refused,
+                });
             }
             self.rest = REST << self.round;
             self.round = self.round.saturating_add(1);
@@ -59,6 +60,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         } else {
             None
         };
+        let frontiers = self.volume.frontiers();
         self.stop(match missed {
             Some(at) => self.unseen(at),
             None if frontiers == 0 => Stop::Complete,
@@ -67,7 +69,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         })
     }
 
-    pub(super) const fn unseen(&self, at: Voxel) -> Stop<Voxel> {
+    pub(super) fn unseen(&self, at: Voxel) -> Stop<Voxel> {
         Stop::Unseen {
             frontiers: self.volume.frontiers(),
             at,

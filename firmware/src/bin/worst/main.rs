@@ -12,6 +12,8 @@ mod explorer;
 mod places;
 #[cfg(target_os = "none")]
 mod scan;
+#[cfg(target_os = "none")]
+mod voxels;
 
 #[cfg(not(target_os = "none"))]
 fn main() -> std::process::ExitCode {
@@ -25,7 +27,8 @@ fn main() -> ! {
     let stopwatch = firmware::Stopwatch::start(timer.expect("nobody else takes the timer"));
     let measured = explorer::measure(&stopwatch)
         .and_then(|()| scan::measure(&stopwatch))
-        .and_then(|()| cao::measure(&stopwatch));
+        .and_then(|()| cao::measure(&stopwatch))
+        .and_then(|()| voxels::measure(&stopwatch));
     match measured {
         Ok(()) => firmware::end(firmware::Ending::Success),
         Err(core::fmt::Error) => panic!("the host does not take the report; enable semihosting"),

@@ -1,0 +1,282 @@
+//! The calls of the planner among voxels, in a box of 40×40×16 of them.
+
+use core::fmt::{self, Write as _};
+
+use cortex_m_semihosting::hio;
+use firmware::Stopwatch;
+use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::rng::Rng;
+use planner_core::tile::TileIndex;
+use planner_core::volume::{Voxel, VoxelPatch};
+use planner_core::voxel_survey::{Config, VoxelSurvey};
+use planner_core::{Action, Extent, RobotId};
+use static_cell::ConstStaticCell;
+
+use crate::Most;
+
+const LEVELS: i16 = 16;
+
+/// How far the robot sees, in voxels.
+const RANGE: u8 = 8;
+
+/// Voxels within the range.
+const SEEN: usize = 2109;
+
+/// Ticks in each place.
+const TICKS: usize = 24;
+
+/// Frames that the robot hears.
+const FRAMES: usize = 24;
+
+static ROBOT: ConstStaticCell<VoxelSurvey<5, 5, 16>> = ConstStaticCell::new(VoxelSurvey::vacant());
+static LOOK: ConstStaticCell<Look> = ConstStaticCell::new(Look {
+    voxels: [(Voxel::new(0, 0, 0), false); SEEN],
+    length: 0,
+});
+
+/// What a look shows.
+struct Look {
+    voxels: [(Voxel, bool); SEEN],
+    length: usize,
+}
+
+impl Look {
+    fn add(&mut self, voxel: Voxel, is_occupied: bool) {
+        if let Some(place) = self.voxels.get_mut(self.length) {
+            *place = (voxel, is_occupied);
+            self.length += 1;
+        }
+    }
+
+    fn seen(&self) -> &[(Voxel, bool)] {
+        self.voxels.get(..self.length).unwrap_or_default()
+    }
+}
+
+/// What a robot knows of a voxel.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Unknown,
+    Free,
+    Occupied,
+}
+
+/// A box that the robot knows, but for some of its voxels.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Voxels that are unknown or occupied by chance: nearly every one of them takes a ray
+    /// of its own.
+    Scattered(u8),
+    /// Rooms of 7×7×7 voxels behind doors of 3×3; some rooms are unknown.
+    Rooms(u8),
+    /// Walls with a gap at their ends by turns: the longest way that fits. At its end is
+    /// something unknown.
+    Winding,
+    /// Open, but for voxels that nothing shows.
+    Open,
+}
+
+/// Places of each kind that chance makes.
+const SEEDS: u8 = 16;
+
+fn chance(seed: u8, Voxel { x, y, z }: Voxel) -> u32 {
+    let place = (x as u64) << 32 | (y as u64) << 16 | z as u64;
+    Rng::new(u64::from(seed), place).next_u32()
+}
+
+impl Place {
+    fn all() -> impl Iterator<Item = Self> {
+        let scattered = (0..SEEDS).map(Self::Scattered);
+        let rooms = (0..SEEDS).map(Self::Rooms);
+        let made = [Self::Winding, Self::Open].into_iter();
+        made.chain(scattered).chain(rooms)
+    }
+
+    /// Where the robot is.
+    const fn own(self) -> Voxel {
+        match self {
+            Self::Winding => Voxel::new(1, 1, 1),
+            Self::Scattered(_) | Self::Rooms(_) | Self::Open => Voxel::new(20, 20, 4),
+        }
+    }
+
+    fn kind(self, at: Voxel) -> Kind {
+        let Voxel { x, y, z } = at;
+        if at.distance_squared(self.own()) <= 3 {
+            return Kind::Free;
+        }
+        match self {
+            Self::Scattered(seed) => {
+                // Ever more unknown voxels, and ever more that are occupied.
+                let unknown = [1, 6, 16, 30][usize::from(seed % 4)];
+                let occupied = [0, 1, 3, 6][usize::from(seed / 4 % 4)];
+                match chance(seed, at) % 64 {
+                    chance if chance < unknown => Kind::Unknown,
+                    chance if chance < unknown + occupied => Kind::Occupied,
+                    _ => Kind::Free,
+                }
+            }
+            Self::Rooms(seed) => {
+                let wall = [x, y, z].map(|a| a % 8 == 0);
+                let walls = wall.iter().filter(|&&is_wall| is_wall).count();
+                let is_door = |a: i16| (3..=5).contains(&(a % 8));
+                let doors = [x, y, z].into_iter().filter(|&a| is_door(a)).count();
+                let room = Voxel::new(x / 8, y / 8, z / 8);
+                match walls {
+                    0 if chance(seed, room) % 8 < u32::from(seed % 6) => Kind::Unknown,
+                    0 => Kind::Free,
+                    1 if doors == 2 && z % 8 != 0 => Kind::Free,
+                    _ => Kind::Occupied,
+                }
+            }
+            Self::Winding => {
+                let is_gap = if (y / 4) % 2 == 0 { x > 36 } else { x < 3 };
+                let is_open = if (z / 4) % 2 == 0 { y > 36 } else { y < 3 };
+                match (y % 4, z % 4) {
+                    (_, 3) if !is_open => Kind::Occupied,
+                    (3, _) if !is_gap => Kind::Occupied,
+                    _ if x == 39 && y == 39 && z == 15 => Kind::Unknown,
+                    _ => Kind::Free,
+                }
+            }
+            Self::Open => {
+                let is_inside = |x: i16, y: i16| (x % 10, y % 10) == (5, 5);
+                if is_inside(x, y) && z == 8 {
+                    Kind::Unknown
+                } else if z == 8 && (is_inside(x + 1, y) || is_inside(x - 1, y))
+                    || z == 8 && (is_inside(x, y + 1) || is_inside(x, y - 1))
+                    || (z == 7 || z == 9) && is_inside(x, y)
+                {
+                    Kind::Occupied
+                } else {
+                    Kind::Free
+                }
+            }
+        }
+    }
+}
+
+#[derive(Default)]
+struct Calls {
+    observe: Most,
+    tick: Most,
+    transmit: Most,
+    receive: Most,
+    work: u32,
+}
+
+/// Measures, and prints `name: value` lines.
+pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
+    let (robot, look) = (ROBOT.take(), LOOK.take());
+    let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
+    let mut calls = Calls::default();
+    for place in Place::all() {
+        enter(robot, place);
+        decide(robot, stopwatch, place, look, &mut calls);
+        talk(robot, stopwatch, place, look, &mut calls);
+    }
+    let of = [
+        ("observe", calls.observe),
+        ("tick", calls.tick),
+        ("transmit", calls.transmit),
+        ("receive", calls.receive),
+    ];
+    for (call, most) in of {
+        writeln!(out, "worst_voxel_survey_{call}: {}", most.instructions())?;
+        writeln!(out, "worst_voxel_survey_{call}_stack: {}", most.stack)?;
+    }
+    writeln!(out, "worst_voxel_survey_work: {}", calls.work)
+}
+
+type Robot = VoxelSurvey<5, 5, 16>;
+
+fn reset(robot: &mut Robot, id: RobotId) {
+    let config = Config {
+        range: RANGE,
+        link: LinkConfig::new(),
+    };
+    let _ = robot.reset(config, id, Extent::new(40, 40), LEVELS as u8);
+}
+
+/// Sets up the robot in a place that it knows.
+fn enter(robot: &mut Robot, place: Place) {
+    reset(robot, RobotId(0));
+    for z in 0..LEVELS {
+        for (x, y) in (0..5).flat_map(|x| (0..5).map(move |y| (x, y))) {
+            let tile = TileIndex::new(x, y);
+            let (mut known, mut occupied) = (0, 0);
+            for bit in 0..64 {
+                let cell = tile.cell(bit);
+                match place.kind(Voxel::new(cell.x, cell.y, z)) {
+                    Kind::Unknown => {}
+                    Kind::Free => known |= 1 << bit,
+                    Kind::Occupied => {
+                        known |= 1 << bit;
+                        occupied |= 1 << bit;
+                    }
+                }
+            }
+            robot.merge(&VoxelPatch {
+                tile,
+                z: z as u8,
+                known,
+                occupied,
+            });
+        }
+    }
+}
+
+/// Decides, and flies where that says.
+fn decide(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, calls: &mut Calls) {
+    let mut at = place.own();
+    for _ in 0..TICKS {
+        look.length = 0;
+        look.add(at, false);
+        calls.observe.of(watch, || robot.observe(at, look.seen()));
+        let action = calls.tick.of(watch, || robot.tick());
+        calls.work = calls.work.max(robot.work());
+        match action {
+            Action::Move(to) => at = to,
+            Action::Wait => {}
+            Action::Stop(_) => break,
+        }
+    }
+}
+
+/// Looks around in a place that it does not know, sends what was seen, and lets the robot
+/// hear it when it knows nothing.
+fn talk(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, calls: &mut Calls) {
+    let mut frames = [(0, [0; MAX_LEN]); FRAMES];
+    let mut free = frames.iter_mut();
+    let eye = Voxel::new(20, 20, 8);
+    let reach = i16::from(RANGE);
+    look.length = 0;
+    let ball = (-reach..=reach).flat_map(|z| {
+        (-reach..=reach)
+            .flat_map(move |y| (-reach..=reach).map(move |x| Voxel::new(20 + x, 20 + y, 8 + z)))
+    });
+    for voxel in ball.filter(|&at| at.distance_squared(eye) <= u32::from(RANGE).pow(2)) {
+        match place.kind(voxel) {
+            Kind::Unknown => {}
+            Kind::Free => look.add(voxel, false),
+            Kind::Occupied => look.add(voxel, true),
+        }
+    }
+    // In the name of another.
+    reset(robot, RobotId(1));
+    for _ in 0..4 {
+        calls.observe.of(watch, || robot.observe(eye, look.seen()));
+        robot.tick();
+        let mut frame = [0; MAX_LEN];
+        while let Some(length) = calls.transmit.of(watch, || robot.transmit(&mut frame)) {
+            if let Some(place) = free.next() {
+                *place = (length, frame);
+            }
+        }
+    }
+    reset(robot, RobotId(0));
+    for (length, frame) in &frames {
+        let frame = frame.get(..*length).unwrap_or_default();
+        let _ = calls.receive.of(watch, || robot.receive(frame));
+    }
+}

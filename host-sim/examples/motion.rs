@@ -121,7 +121,7 @@ fn main() {
     let rows = 2 * arguments.robots.len() as u64;
     let bar = ProgressBar::new(places * rows);
     println!(
-        "| robots | drive | way to that of unit steps | to that by the cells entered | seconds, explorer | MinPos | ratio | left, touched |"
+        "| robots | drive | way | straight | explorer, s | MinPos, s | ratio | left, touched |"
     );
     println!("|---:|---|---:|---:|---:|---:|---:|---:|");
     for &robots in &arguments.robots {

@@ -33,7 +33,7 @@ struct Arguments {
     #[arg(
         long,
         value_delimiter = ',',
-        default_value = "40000,80000,120000,160000,480000,960000"
+        default_value = "40000,80000,120000,160000,232000,480000,960000"
     )]
     slices: Vec<u32>,
 }

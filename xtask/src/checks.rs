@@ -6,8 +6,8 @@ use anyhow::{Context, Result, bail};
 
 use crate::shell::{Command, cargo, command, root};
 use crate::{
-    c_interface, c_library, crazyflie, documents, firmware, fuzz, host, install, lab, output, ros,
-    slurm, worst,
+    c_interface, c_library, crazyflie, documents, figures, firmware, fuzz, host, install, lab,
+    output, ros, slurm, worst,
 };
 
 /// One thing that must hold.
@@ -159,6 +159,11 @@ const CHECKS: &[Check] = &[
         name: "commands",
         title: "the commands in the documents exist",
         run: documents::check,
+    },
+    Check {
+        name: "figures",
+        title: "the figures in the documents are what quick commands say",
+        run: figures::check,
     },
     Check {
         name: "mcap",

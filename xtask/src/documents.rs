@@ -58,7 +58,7 @@ fn documents() -> Result<Vec<PathBuf>> {
 
 /// The `cargo` commands of code blocks and of code in text and tables, with their line
 /// numbers.
-fn commands_in(text: &str) -> Vec<(usize, String)> {
+pub(crate) fn commands_in(text: &str) -> Vec<(usize, String)> {
     let mut commands: Vec<(usize, String)> = Vec::new();
     let mut in_block = false;
     for (event, place) in Parser::new_ext(text, Options::ENABLE_TABLES).into_offset_iter() {
@@ -165,7 +165,7 @@ fn simulator_takes(words: &[&str]) -> Result<()> {
 
 /// The program that `cargo run …` runs, or nothing for another than the simulator's. An
 /// optimised one would say the same; this one is built for the tests anyway.
-fn program(cargo_words: &[&str]) -> Result<Option<PathBuf>> {
+pub(crate) fn program(cargo_words: &[&str]) -> Result<Option<PathBuf>> {
     let workspace = Workspace::read()?;
     workspace.has(cargo_words)?;
     let value = |option: &str| {

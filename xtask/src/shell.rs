@@ -22,11 +22,12 @@ pub(crate) fn root() -> &'static Path {
     })
 }
 
-/// A command that runs in [`root`], without input.
+/// A command that runs in [`root`] or elsewhere, without input.
 pub(crate) struct Command {
     program: OsString,
     arguments: Vec<OsString>,
     environment: Vec<(&'static str, String)>,
+    folder: PathBuf,
 }
 
 /// What a command printed, and how it ended.
@@ -49,6 +50,7 @@ pub(crate) fn command(program: impl Into<OsString>) -> Command {
         program: program.into(),
         arguments: Vec::new(),
         environment: Vec::new(),
+        folder: root().to_path_buf(),
     }
 }
 
@@ -72,6 +74,12 @@ impl Command {
 
     pub(crate) fn env(mut self, key: &'static str, value: impl Into<String>) -> Self {
         self.environment.push((key, value.into()));
+        self
+    }
+
+    /// Lets it run in this folder.
+    pub(crate) fn dir(mut self, folder: &Path) -> Self {
+        self.folder = folder.to_path_buf();
         self
     }
 
@@ -119,7 +127,7 @@ impl Command {
 
     fn expression(&self) -> duct::Expression {
         let mut expression = duct::cmd(&self.program, &self.arguments)
-            .dir(root())
+            .dir(&self.folder)
             .stdin_null()
             .unchecked();
         // Cargo describes the package xtask to us; Cargo's that we start would

@@ -20,8 +20,8 @@ pub(crate) struct Figures {
     /// Folder for the figures.
     #[arg(long, value_name = "DIR", default_value = "out/figures")]
     out: PathBuf,
-    /// These figures only: fig6 to fig11, minpos; in 3-D fcao3, fcao4, fcao6,
-    /// fcao-robots, fcao-work.
+    /// These figures only: fig6 to fig11, spread, minpos; in 3-D fcao3, fcao4, fcao6,
+    /// fcao-robots, fcao-work, towns.
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     only: Vec<String>,
     /// A few runs only, to see that all is well.
@@ -49,6 +49,7 @@ impl Figures {
             bar.set_message(figure.id);
             let drawn = Drawn::from(&measure(figure, &|| bar.inc(1))?);
             write(&mut folder, &drawn)?;
+            bar.suspend(|| print!("{}", drawn.summary));
             explorations.push(drawn);
         }
         let mut surveys = Vec::new();
@@ -57,6 +58,7 @@ impl Figures {
             let terrains = if self.quick { 3 } else { 100 };
             if let Some(drawn) = survey(id, terrains)? {
                 write(&mut folder, &drawn)?;
+                bar.suspend(|| print!("{}", drawn.summary));
                 surveys.push(drawn);
             }
         }

@@ -4,6 +4,7 @@ mod list;
 mod measure;
 mod page;
 mod surveys;
+mod tables;
 
 pub use list::{Effort, Figure, Layout, figures};
 pub use measure::{Measured, measure};

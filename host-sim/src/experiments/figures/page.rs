@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::measure::Measured;
+use super::tables::tables;
 use crate::draw::chart::Chart;
 use crate::experiments::{Metric, compare, markdown, to_csv};
 use crate::planners::PlannerKind;
@@ -24,6 +25,8 @@ pub struct Drawn {
     pub commands: String,
     /// The numbers as a table to read; may be empty.
     pub table: String,
+    /// What it comes to, in Markdown; may be empty.
+    pub summary: String,
 }
 
 impl From<&Measured> for Drawn {
@@ -47,6 +50,7 @@ impl From<&Measured> for Drawn {
             csv: to_csv(&measured.rows, true),
             commands: figure.command(),
             table: markdown(&comparisons, PlannerKind::MinPos, Metric::Seen),
+            summary: tables(measured),
         }
     }
 }

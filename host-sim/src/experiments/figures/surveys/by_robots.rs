@@ -1,6 +1,8 @@
 //! Time to see everything by number of robots, and by loss.
 
-use super::{Drawn, Fleet, METHODS, ROBOTS, SIDE, Setup, colour};
+use std::fmt::Write;
+
+use super::{Drawn, Fleet, METHODS, ROBOTS, SIDE, Setup, colour, times};
 use crate::draw::chart::{Axis, Chart, Panel, Series, Style};
 use crate::experiments::Interval;
 use crate::experiments::table::Csv;
@@ -71,6 +73,24 @@ pub(super) fn by_robots(terrains: u64) -> Result<Drawn, ScenarioError> {
             &max,
         ]);
     }
+    let mut summary = String::from(
+        "| planner | robots | medium | lost | 95 % | 99 % | 100 % | to greedy | to greedy-unique |\n\
+         |---|---:|---|---:|---:|---:|---:|---:|---:|\n",
+    );
+    for fleet in &rows {
+        let Setup {
+            robots,
+            medium,
+            loss,
+            ..
+        } = fleet.setup;
+        let (name, lost) = (fleet.name(), 100.0 * loss);
+        let _ = writeln!(
+            summary,
+            "| {name} | {robots} | {medium} | {lost:.0} % | {} |",
+            times(fleet, &rows)
+        );
+    }
     let of = |planner: Planner, medium| {
         rows.iter()
             .filter(move |fleet| fleet.setup.planner == planner && fleet.setup.medium == medium)
@@ -138,5 +158,6 @@ pub(super) fn by_robots(terrains: u64) -> Result<Drawn, ScenarioError> {
         csv: csv.text(),
         commands: String::new(),
         table: String::new(),
+        summary,
     })
 }

@@ -1,6 +1,8 @@
 //! Time to see everything, terrain by terrain [Renzaglia2019 fig. 4].
 
-use super::{Drawn, Fleet, ROBOTS, SIDE};
+use std::fmt::Write;
+
+use super::{Drawn, Fleet, ROBOTS, SIDE, times};
 use crate::draw::chart::{Axis, Chart, Panel, Point, Style};
 use crate::experiments::table::Csv;
 use crate::scenario::heights::Planner;
@@ -37,6 +39,12 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Drawn {
         .iter()
         .map(|fleet| fleet.setup.planner.to_string())
         .collect();
+    let mut summary = String::from(
+        "| planner | 95 % | 99 % | 100 % | to greedy | to greedy-unique |\n|---|---:|---:|---:|---:|---:|\n",
+    );
+    for fleet in fleets {
+        let _ = writeln!(summary, "| {} | {} |", fleet.name(), times(fleet, fleets));
+    }
     let duration = "ticks until every column is seen";
     Drawn {
         id: "fcao4",
@@ -74,6 +82,7 @@ pub(super) fn final_times(fleets: &[Fleet]) -> Drawn {
         csv: csv.text(),
         commands: String::new(),
         table: String::new(),
+        summary,
     }
 }
 

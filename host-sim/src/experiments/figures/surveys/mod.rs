@@ -1,10 +1,11 @@
-//! The figures of the paper on the project's own runs [Renzaglia2019 fig. 3, 4, 6],
-//! and the tables behind them.
+//! The figures of the paper on the project's own runs [Renzaglia2019 fig. 3, 4, 6], the
+//! tables behind them, and towns of voxels.
 
 mod by_robots;
 mod final_times;
 mod over_time;
 mod town;
+mod towns;
 mod work;
 
 use rayon::prelude::*;
@@ -37,7 +38,14 @@ const SIDE: u16 = 100;
 const ROBOTS: usize = 8;
 
 /// Names of the figures.
-pub const FIGURES: [&str; 5] = ["fcao3", "fcao4", "fcao6", "fcao-robots", "fcao-work"];
+pub const FIGURES: [&str; 6] = [
+    "fcao3",
+    "fcao4",
+    "fcao6",
+    "fcao-robots",
+    "fcao-work",
+    "towns",
+];
 
 /// Makes that one of the [`FIGURES`] over the Gaussian terrains 0 to `terrains` - 1;
 /// `None` if there is no such figure.
@@ -57,6 +65,7 @@ pub fn figure(id: &str, terrains: u64) -> Result<Option<Drawn>, ScenarioError> {
         "fcao6" => town::town()?,
         "fcao-robots" => by_robots::by_robots(terrains)?,
         "fcao-work" => work::work(terrains.min(10))?,
+        "towns" => towns::towns(terrains.min(4))?,
         _ => return Ok(None),
     }))
 }
@@ -195,4 +204,20 @@ fn colour(planner: Planner) -> usize {
         .iter()
         .position(|&method| method == planner)
         .unwrap_or(0)
+}
+
+/// Cells of a table: mean times to 95, 99 and 100 %, half of the 95 % confidence interval of
+/// the last, and its ratios to greedy and greedy-unique with all news exchanged at once.
+fn times(fleet: &Fleet, fleets: &[Fleet]) -> String {
+    let [most, nearly, all] =
+        [0, 1, 2].map(|share| fleet.ticks(share).map_or(f64::NAN, |it| it.mean));
+    let half = fleet.ticks(2).map_or(f64::NAN, |it| it.high - it.mean);
+    let ratio = |planner| {
+        let reference = Setup::new(planner, fleet.setup.robots);
+        let reference = fleets.iter().find(|fleet| fleet.setup == reference);
+        let reference = reference.and_then(|fleet| fleet.ticks(2));
+        all / reference.map_or(f64::NAN, |it| it.mean)
+    };
+    let [greedy, unique] = [Planner::Greedy, Planner::GreedyUnique].map(ratio);
+    format!("{most:.1} | {nearly:.1} | {all:.1} ± {half:.1} | {greedy:.2} | {unique:.2}")
 }

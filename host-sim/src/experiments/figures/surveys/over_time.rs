@@ -48,5 +48,6 @@ pub(super) fn over_time(fleets: &[Fleet]) -> Drawn {
         csv: csv.text(),
         commands: String::new(),
         table: String::new(),
+        summary: String::new(),
     }
 }

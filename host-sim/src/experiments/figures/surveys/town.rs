@@ -68,5 +68,6 @@ pub(super) fn town() -> Result<Drawn, ScenarioError> {
         csv: csv.text(),
         commands: String::new(),
         table: String::new(),
+        summary: String::new(),
     })
 }

@@ -166,7 +166,7 @@ pub(super) struct Table {
     title: String,
     /// The head first.
     rows: Vec<Vec<Range<usize>>>,
-    pub(super) places: Vec<Range<usize>>,
+    places: Vec<Range<usize>>,
 }
 
 /// All tables of a text.
@@ -210,6 +210,23 @@ fn row(text: &str, line: Range<usize>) -> Vec<Range<usize>> {
 }
 
 impl Table {
+    /// Rows with numbers: with a cell behind the first that has nothing else, or any number
+    /// at all.
+    pub(super) fn figures(&self, text: &str, any: bool) -> Vec<Range<usize>> {
+        let has_digit = |cell: &str| cell.contains(|it: char| it.is_ascii_digit());
+        let is_figure = |cell: &Range<usize>| {
+            let cell = &text[cell.clone()];
+            has_digit(cell) && !cell.contains(char::is_alphabetic)
+        };
+        let rows = self.rows.iter().zip(&self.places).skip(1);
+        rows.filter(|(cells, place)| match any {
+            true => has_digit(&text[(*place).clone()]),
+            false => cells.iter().skip(1).any(is_figure),
+        })
+        .map(|(_, place)| place.clone())
+        .collect()
+    }
+
     /// Whether the table is meant by a pattern.
     pub(super) fn is(&self, pattern: &str, text: &str) -> bool {
         let (title, head) = pattern.split_once('|').unwrap_or_default();
@@ -322,7 +339,7 @@ pub(super) fn as_before(before: &str, rounded: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Tolerance, as_before, compare, find};
+    use super::{Tolerance, as_before, compare, find, tables};
 
     fn values(pattern: &str, text: &str) -> Vec<f64> {
         let found = find(pattern, text).unwrap();
@@ -374,6 +391,14 @@ mod tests {
         assert!(compare(&found(told), &found(other), tolerance(1.0)).is_err());
         assert!(find("Metres: | map |", told).is_err());
         assert!(find("Ticks: | map |", told).is_ok());
+    }
+
+    #[test]
+    fn rows_with_figures_are_known() {
+        let text = "| a | b |\n|---|---|\n| 1 | up to 8 |\n| x | 8 % |\n";
+        let tables = tables(text);
+        let rows = |any| tables[0].figures(text, any).len();
+        assert_eq!((rows(false), rows(true)), (1, 2));
     }
 
     #[test]

@@ -17,6 +17,7 @@ use crate::documents;
 use crate::host;
 use crate::shell::{cargo, command, root};
 use list::{Entry, Figure};
+use read::Correction;
 
 /// Which figures, and what to do about wrong ones.
 #[derive(clap::Args)]
@@ -157,7 +158,7 @@ struct Documents(BTreeMap<String, Document>);
 
 struct Document {
     text: String,
-    corrections: Vec<(Range<usize>, String)>,
+    corrections: Vec<Correction>,
 }
 
 impl Documents {
@@ -248,17 +249,13 @@ impl Documents {
     }
 
     /// What is wrong of a figure, in words, and what is right.
-    fn corrections(
-        &self,
-        figure: &Figure,
-        measured: &str,
-    ) -> Result<Vec<(String, (Range<usize>, String))>> {
+    fn corrections(&self, figure: &Figure, measured: &str) -> Result<Vec<(String, Correction)>> {
         let text = &self.document(&figure.document)?.text;
         let told = read::find(&figure.told, text)?;
         let found = read::find(&figure.measured, measured)
             .with_context(|| format!("what the command says:\n{measured}"))?;
         let corrections = read::compare(&told, &found, figure.tolerance)?;
-        let in_words = |(place, right): (Range<usize>, String)| {
+        let in_words = |(place, right): Correction| {
             let line = 1 + text[..place.start].matches('\n').count();
             let said = &text[place.clone()];
             let name = { told.iter() }
@@ -274,7 +271,7 @@ impl Documents {
         Ok(corrections.into_iter().map(in_words).collect())
     }
 
-    fn correct(&mut self, figure: &Figure, correction: (Range<usize>, String)) {
+    fn correct(&mut self, figure: &Figure, correction: Correction) {
         if let Some(document) = self.0.get_mut(&figure.document) {
             document.corrections.push(correction);
         }

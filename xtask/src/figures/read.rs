@@ -275,15 +275,15 @@ pub(super) fn rows(pattern: &str, text: &str) -> Result<Vec<Range<usize>>> {
     Ok(rows)
 }
 
-/// How a document would be right: places, and what should stand there.
-pub(super) type Corrections = Vec<(Range<usize>, String)>;
+/// How a document would be right: a place, and what should stand there.
+pub(super) type Correction = (Range<usize>, String);
 
 /// Holds what a document tells against what was measured. `Err`: they cannot be compared.
 pub(super) fn compare(
     told: &[Found],
     measured: &[Found],
     tolerance: Tolerance,
-) -> Result<Corrections> {
+) -> Result<Vec<Correction>> {
     let mut corrections = Vec::new();
     for (place, told) in told.iter().enumerate() {
         // A sentence is worded otherwise in the document.

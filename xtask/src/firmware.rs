@@ -223,31 +223,37 @@ pub(crate) fn example_explores() -> Result<String> {
     // What is flashed logs over RTT, which the emulator has not; but what it says
     // can be read if its table can.
     tools::run("logs", [&image.path])?;
+    tools::run("logs", [&path("rtic", TARGET)])?;
     install::qemu()?;
-    let output = emulate("emulated")?;
+    let logs = logs_of("emulated", &EXPECTED_LOGS)?;
+    let with_radio = logs_of("rtic_emulated", &EXPECTED_LOGS_WITH_RADIO)?;
+    Ok(format!(
+        "flash {}, static RAM {} bytes; {logs} logs; with RTIC {with_radio}",
+        image.flash, image.statics,
+    ))
+}
+
+/// Runs an example in the emulator, and looks for what it must log; returns how much it logs.
+fn logs_of(image: &str, expected: &[&str]) -> Result<usize> {
+    let output = emulate(image)?;
     if !output.success() {
         bail!(
-            "the example ended with {:?}\n{}",
+            "the example {image} ended with {:?}\n{}",
             output.status,
             output.stderr
         );
     }
-    let image_that_ran = path("emulated", TARGET);
+    let image_that_ran = path(image, TARGET);
     let bytes = image_that_ran.with_extension("logs");
     std::fs::write(&bytes, &output.bytes)?;
     let logs = tools::run("logs", [image_that_ran, bytes])?;
     print!("{logs}");
-    for expected in EXPECTED_LOGS {
+    for expected in expected {
         if !logs.contains(expected) {
-            bail!("the example never logs {expected:?}");
+            bail!("the example {image} never logs {expected:?}");
         }
     }
-    Ok(format!(
-        "flash {}, static RAM {} bytes; {} logs",
-        image.flash,
-        image.statics,
-        logs.lines().count()
-    ))
+    Ok(logs.lines().count())
 }
 
 /// What the example logs: in its room everything can be seen, one sensor once does not
@@ -256,6 +262,13 @@ const EXPECTED_LOGS: [&str; 4] = [
     "DEBUG at Cell { x: 32, y: 32 }: learnt Learnt { cells: ",
     "WARN sensor 0x10: NoAcknowledge(Address)",
     "DEBUG stopped on the way to Cell { x: 37, y: 33 }",
+    "INFO Complete; ",
+];
+
+/// With RTIC it also hears a second robot, through the interrupt of its radio.
+const EXPECTED_LOGS_WITH_RADIO: [&str; 3] = [
+    "INFO robot 0: starts at Cell { x: 32, y: 32 }",
+    "DEBUG robot 0: hears robot 1 at Cell { x: 37, y: 32 }",
     "INFO Complete; ",
 ];
 

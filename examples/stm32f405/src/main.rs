@@ -7,6 +7,8 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+mod radio;
+#[cfg(target_os = "none")]
 mod rangers;
 #[cfg(target_os = "none")]
 mod robot;
@@ -17,6 +19,11 @@ mod wheels;
 fn main() {
     eprintln!("This is an image for the chip; flash it with `probe-rs run --chip STM32F405RG`.");
 }
+
+/// The planner's whole memory.
+#[cfg(target_os = "none")]
+static EXPLORER: static_cell::ConstStaticCell<robot::Robot> =
+    static_cell::ConstStaticCell::new(robot::Robot::vacant());
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
@@ -50,7 +57,8 @@ fn main() -> ! {
         right_back: port_b.pb1.into_push_pull_output(),
         delay: core.SYST.delay(&clocks),
     };
-    robot::run(rangers::Rangers::new(bus), wheels)
+    let rangers = rangers::Rangers::new(bus);
+    robot::run(EXPLORER.take(), radio::Silence, rangers, wheels)
 }
 
 /// The robot has stopped, for good.

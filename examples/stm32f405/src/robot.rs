@@ -7,22 +7,36 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::i2c::I2c;
 use embedded_hal::pwm::SetDutyCycle;
 use planner_core::explorer::{Config, Explorer, SensorModel};
+use planner_core::radio::MAX_LEN;
 use planner_core::sight::{Pose, RangeScan};
 use planner_core::{Action, Cell, Direction, Extent, Motion, Planner, RobotId, Wait};
-use static_cell::ConstStaticCell;
 
+use crate::radio::Radio;
 use crate::rangers::{CELL_MM, Rangers, SENSOR};
 use crate::wheels::Wheels;
 
-/// The planner's whole memory, for a map of 64×64 cells: 16×16 metres.
-static EXPLORER: ConstStaticCell<Explorer<8, 8>> = ConstStaticCell::new(Explorer::vacant());
+/// The planner, for a map of 64×64 cells: 16×16 metres.
+pub(crate) type Robot = Explorer<8, 8>;
 
-const EXTENT: Extent = Extent::new(64, 64);
+pub(crate) const EXTENT: Extent = Extent::new(64, 64);
 /// Where the robot is switched on: in the middle of the map, looking east.
-const START: Cell = Cell::new(32, 32);
+pub(crate) const START: Cell = Cell::new(32, 32);
+
+/// What robots of the fleet agree upon.
+pub(crate) fn config() -> Config {
+    let mut config = Config::new();
+    config.sensor = SensorModel::rangers();
+    config.link.cell_mm = CELL_MM;
+    config
+}
 
 /// Explores, and then rests.
-pub(crate) fn run<I, P, Q, A, B, D>(mut rangers: Rangers<I>, mut wheels: Wheels<P, Q, A, B, D>) -> !
+pub(crate) fn run<I, P, Q, A, B, D>(
+    explorer: &mut Robot,
+    mut radio: impl Radio,
+    mut rangers: Rangers<I>,
+    mut wheels: Wheels<P, Q, A, B, D>,
+) -> !
 where
     I: I2c,
     P: SetDutyCycle,
@@ -31,14 +45,11 @@ where
     B: OutputPin,
     D: DelayNs,
 {
-    let explorer = EXPLORER.take();
-    let mut config = Config::new();
-    config.sensor = SensorModel::rangers();
-    config.link.cell_mm = CELL_MM;
-    if let Err(error) = explorer.reset(config, RobotId(0), EXTENT, START) {
+    if let Err(error) = explorer.reset(config(), RobotId(0), EXTENT, START) {
         defmt::panic!("{}", error);
     }
     let (mut position, mut heading) = (START, Direction::East);
+    let mut buffer = [0; MAX_LEN];
     loop {
         let scan = RangeScan {
             pose: pose(position, heading),
@@ -52,8 +63,13 @@ where
             }
             Err(error) => defmt::warn!("a scan without a use: {}", error),
         }
-        // With a radio: `explorer.transmit` until it returns `None`, and
-        // `explorer.receive` for every packet that has come in.
+        while let Some(frame) = radio.receive() {
+            // The planner logs what it refuses, and why.
+            let _ = explorer.receive(&frame);
+        }
+        while let Some(length) = explorer.transmit(&mut buffer) {
+            radio.send(buffer.get(..length).unwrap_or(&[]));
+        }
         match explorer.tick() {
             Action::Move(direction) => {
                 wheels.turn(heading, direction);

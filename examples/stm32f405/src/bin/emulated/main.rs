@@ -4,6 +4,9 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+#[path = "../../radio.rs"]
+mod radio;
+#[cfg(target_os = "none")]
 #[path = "../../rangers.rs"]
 mod rangers;
 #[cfg(target_os = "none")]
@@ -20,6 +23,11 @@ fn main() {
     eprintln!("This is an image for an emulated chip: `cargo xtask test --only example`.");
 }
 
+/// The planner's whole memory.
+#[cfg(target_os = "none")]
+static EXPLORER: static_cell::ConstStaticCell<robot::Robot> =
+    static_cell::ConstStaticCell::new(robot::Robot::vacant());
+
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
@@ -35,7 +43,8 @@ fn main() -> ! {
         right_back: room.reverse(room::Side::Right),
         delay: room.time(),
     };
-    robot::run(rangers::Rangers::new(room.bus()), wheels)
+    let rangers = rangers::Rangers::new(room.bus());
+    robot::run(EXPLORER.take(), radio::Silence, rangers, wheels)
 }
 
 /// The robot has stopped: the emulation ends.

@@ -261,8 +261,8 @@ pub extern "C" fn planner_go_to(planner: *mut Planner, cell: PlannerCell) -> Pla
     })
 }
 
-/// Says how many steps the robot's energy lasts for; each step that it makes takes one off
-/// until it is told again. It turns back while that lasts for the shortest way home that it
+/// Tells the planner how many more steps the robot's energy allows; each step that is
+/// reported as `PLANNER_MOVED` takes one off until it is told again. It turns back while that lasts for the shortest way home that it
 /// knows, and stops there with `PLANNER_STOP_HOME`; told more, `planner_resume` goes on
 /// exploring. Without this call there is no limit.
 ///

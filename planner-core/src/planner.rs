@@ -268,9 +268,10 @@ pub trait Errands<const TW: usize, const TH: usize>: Planner<TW, TH> {
         false
     }
 
-    /// Says how many steps the robot's energy lasts for; each step that it makes takes one
-    /// off until it is told again. Call it before the first tick, and whenever the number is
-    /// measured anew.
+    /// Tells the planner how many more steps the robot's energy allows; each step that is
+    /// reported as [`Motion::Moved`] takes one off until it is told again. Call it before the
+    /// first tick, and whenever the number is measured anew; a robot that follows
+    /// [waypoints](Planner::waypoint) and reports no steps calls it often.
     ///
     /// The robot turns back while what is left lasts for the shortest known way home, and
     /// stops there with [`Stop::Home`](crate::Stop::Home); told more energy then,

@@ -12,7 +12,7 @@ macro_rules! built_in {
         (
             $name,
             concat!("fixtures/maps/", $file),
-            include_bytes!(concat!("../../fixtures/maps/", $file)),
+            include_bytes!(concat!("../maps/", $file)),
         )
     };
 }

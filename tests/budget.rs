@@ -55,3 +55,28 @@ fn planners_fit_their_budget() {
         }
     }
 }
+
+#[test]
+fn the_page_tells_every_limit() {
+    const CYCLES_IN_A_MILLISECOND: f64 = 168e3;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let budget = file::Budget::read(root).unwrap_or_else(|error| panic!("{error}"));
+    let page = std::fs::read_to_string(root.join("docs/budgets.md")).unwrap();
+    let told: Vec<&str> = page.lines().filter(|it| it.starts_with("| `")).collect();
+    let limits = budget.0.iter().map(|(name, limit)| {
+        let time = match name.ends_with("_instructions") {
+            true => format!(" {:.2} |", *limit as f64 / CYCLES_IN_A_MILLISECOND),
+            false => String::new(),
+        };
+        format!("| `{name}` | {} |{time}", with_commas(*limit))
+    });
+    assert_eq!(told, limits.collect::<Vec<_>>(), "docs/budgets.md");
+}
+
+/// A number with a comma before each three digits.
+fn with_commas(number: u64) -> String {
+    match number {
+        0..1000 => number.to_string(),
+        _ => format!("{},{:03}", with_commas(number / 1000), number % 1000),
+    }
+}

@@ -6,7 +6,7 @@
 use std::path::Path;
 
 /// The limits, in the order of the file.
-pub(crate) struct Budget(Vec<(String, u64)>);
+pub(crate) struct Budget(pub(crate) Vec<(String, u64)>);
 
 impl Budget {
     /// Reads `fixtures/budget.txt` below the folder of the workspace.

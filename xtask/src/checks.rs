@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use crate::shell::{Command, cargo, command, root};
 use crate::{
     c_interface, c_library, crazyflie, documents, figures, firmware, fuzz, host, install, lab,
-    output, ros, slurm, worst,
+    notices, output, ros, site, slurm, worst,
 };
 
 /// One thing that must hold.
@@ -88,16 +88,21 @@ const CHECKS: &[Check] = &[
     Check {
         name: "doc",
         title: "the documentation builds without warnings",
+        run: || site::document().map(nothing),
+    },
+    Check {
+        name: "notices",
+        title: "all that the programs embed may be passed on with its notice",
+        run: notices::write,
+    },
+    Check {
+        name: "workflow",
+        title: "the workflow of the code host has no mistake",
         run: || {
-            cargo([
-                "doc",
-                "--workspace",
-                "--no-deps",
-                "--features=host-sim/parquet,host-sim/mcap",
-            ])
-            .env("RUSTDOCFLAGS", "-Dwarnings")
-            .run()
-            .map(nothing)
+            command(install::actionlint()?)
+                .arg(".github/workflows/ci.yml")
+                .run()
+                .map(nothing)
         },
     },
     Check {
@@ -129,6 +134,11 @@ const CHECKS: &[Check] = &[
         name: "lab-web",
         title: "the lab's page in a browser decides as the host",
         run: lab::page_works,
+    },
+    Check {
+        name: "site",
+        title: "the site has no dead link, and no complaint in a browser",
+        run: site::works,
     },
     Check {
         name: "test-keyed",
@@ -187,8 +197,8 @@ const CHECKS: &[Check] = &[
     },
     Check {
         name: "package",
-        title: "planner-core stands alone as a crate that can be published",
-        run: core_is_packaged,
+        title: "what can be published stands alone, crate by crate",
+        run: crates_are_packaged,
     },
     Check {
         name: "firmware",
@@ -393,19 +403,42 @@ fn core_builds_with_its_oldest_compiler() -> Result<String> {
     Ok(format!("Rust {oldest}"))
 }
 
-/// The crate as its users get it is built, without what it has for surveys; and it
-/// carries what a user needs to read.
-fn core_is_packaged() -> Result<String> {
+/// Crates as their users get them carry what one needs to read, and are whole: each is
+/// unpacked and built, on top of those that it needs. planner-core is built without what it
+/// has for surveys, too.
+fn crates_are_packaged() -> Result<String> {
     const CARRIES: [&str; 3] = ["README.md", "LICENSE-APACHE", "LICENSE-MIT"];
-    let package = || cargo(["package", "-p=planner-core", "--allow-dirty"]);
-    let list = package().arg("--list").output()?;
-    for file in CARRIES {
-        if !list.stdout.lines().any(|line| line == file) {
-            bail!("the crate does not carry {file}");
+    /// In the order in which they are to be published.
+    const CRATES: [&str; 5] = [
+        "planner-core",
+        "host-sim-bridge",
+        "ros-messages",
+        "host-sim",
+        "lab",
+    ];
+    let package = |name: &str| cargo(["package", "--allow-dirty", "-p"]).arg(name);
+    let mut files = 0;
+    for name in CRATES {
+        let list = package(name).arg("--list").output()?;
+        for file in CARRIES {
+            if !list.stdout.lines().any(|line| line == file) {
+                bail!("{name} does not carry {file}");
+            }
         }
+        files += list.stdout.lines().count();
     }
-    package().arg("--no-default-features").run()?;
-    Ok(format!("{} files", list.stdout.lines().count()))
+    package(CRATES[0]).arg("--no-default-features").run()?;
+    // Built as everything else, so that what they stand on need not be compiled once more.
+    let all = CRATES[1..]
+        .iter()
+        .fold(package(CRATES[0]), |all, name| all.args(["-p", name]));
+    all.args(["--no-default-features", "--locked"])
+        .args(["--config=profile.dev.opt-level=1"])
+        .args(["--config=profile.dev.debug='line-tables-only'"])
+        .args(["--config=profile.dev.build-override.debug=false"])
+        .args(["--config=profile.dev.package.'*'.debug=false"])
+        .run()?;
+    Ok(format!("{} crates of {files} files", CRATES.len()))
 }
 
 /// The same cases of each property every time, so that a check says the same of the

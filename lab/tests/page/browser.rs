@@ -69,6 +69,15 @@ impl Browser {
         }
     }
 
+    /// Shows pages as on a screen of this size, which may be narrower than any window.
+    pub(crate) fn set_screen(&self, width: u32, height: u32) {
+        let metrics = json!({
+            "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500,
+        });
+        let command = json!({"cmd": "Emulation.setDeviceMetricsOverride", "params": metrics});
+        post(&format!("{}/goog/cdp/execute", self.session), &command);
+    }
+
     pub(crate) fn open(&self, url: &str) {
         // Also when only the part behind # differs, from scratch.
         post(
@@ -203,6 +212,9 @@ fn answer(mut stream: TcpStream, folder: &Path) {
     let kind = match path.rsplit('.').next() {
         Some("html") => "text/html",
         Some("js") => "text/javascript",
+        Some("css") => "text/css",
+        Some("svg") => "image/svg+xml",
+        Some("png") => "image/png",
         Some("wasm") => "application/wasm",
         _ => "application/octet-stream",
     };

@@ -2,6 +2,7 @@
 //! browser and runs this.
 
 mod browser;
+mod site;
 
 use std::path::Path;
 use std::process::Command;

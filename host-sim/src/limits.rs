@@ -21,7 +21,7 @@ pub struct Area {
     corners: Vec<Cell>,
 }
 
-/// What a fleet keeps out of. Nothing by default; the explorer's alone.
+/// What a fleet keeps out of. Nothing by default; for the explorer only.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Limits {
@@ -205,11 +205,11 @@ pub struct LimitsArgs {
     /// X,Y:X,Y: robots neither enter nor touch these cells, and need not see them: a
     /// rectangle, or a polygon of three corners and more. With an m behind it, for example
     /// 0.5,1:2,3.5m, in metres of the map's frame (y up; from the origin of a .yaml): each
-    /// corner is the cell that it lies in. May be given again. The explorer's alone.
+    /// corner is the cell that it lies in. May be given again. Explorer only.
     #[arg(long, value_name = "X,Y:X,Y[m]", allow_hyphen_values = true)]
     keep_out: Vec<Given>,
     /// X,Y:X,Y: robots stay within this area, or with several within any of them; also in
-    /// metres. The explorer's alone.
+    /// metres. Explorer only.
     #[arg(long, value_name = "X,Y:X,Y[m]", allow_hyphen_values = true)]
     only: Vec<Given>,
 }

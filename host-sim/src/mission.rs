@@ -3,7 +3,7 @@
 use clap::Args;
 use serde::{Deserialize, Serialize};
 
-/// What robots are sent out with. Nothing of it by default; the explorer's alone.
+/// What robots are sent out with. Nothing of it by default; for the explorer only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Mission {
@@ -30,12 +30,12 @@ impl Mission {
 /// The options that set a [`Mission`].
 #[derive(Args, Clone, Copy)]
 pub struct MissionArgs {
-    /// A robot that has explored goes home, to where it started, before it stops. The
-    /// explorer's alone.
+    /// A robot that has explored goes home, to where it started, before it stops. Explorer
+    /// only.
     #[arg(long)]
     come_home: bool,
     /// Steps that a robot's energy lasts for: it turns back in time, and stops at home. With
-    /// --resume it goes on with as much again. The explorer's alone.
+    /// --resume it goes on with as much again. Explorer only.
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     energy: Option<u32>,
 }

@@ -39,7 +39,7 @@ pub(crate) struct Explore {
     /// The map: .png, .pgm, .yaml (ROS map_server), .map (MovingAI) or .txt. What it
     /// calls unknown (map_saver's gray 205, transparent pixels) robots do not enter.
     map: PathBuf,
-    /// What decides in each robot.
+    /// The planner of each robot.
     #[arg(long, value_name = "NAME", default_value = "explorer")]
     planner: PlannerKind,
     /// Number of robots, 1 to 255.
@@ -80,7 +80,7 @@ pub(crate) struct Explore {
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
     /// Also write what the planners know when the run ends, for --restore. The first Ctrl-C
-    /// ends the run then. The explorer's alone.
+    /// ends the run then. Explorer only.
     #[arg(long, value_name = "FILE")]
     save: Option<PathBuf>,
     /// Go on from a file of --save: in the same map, with as many robots, from where they

@@ -63,7 +63,7 @@ pub(crate) struct Robot {
     /// What decides.
     #[arg(long, value_name = "NAME", default_value = "explorer")]
     planner: PlannerKind,
-    /// What it takes its sensor for: truthful, lidar or rangers. The explorer's alone.
+    /// Its model of its sensor: truthful, lidar or rangers. Explorer only.
     #[arg(long, value_name = "NAME", default_value = "truthful")]
     preset: Preset,
     #[command(flatten)]

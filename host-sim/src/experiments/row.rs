@@ -41,7 +41,7 @@ pub struct Row {
     pub range: u8,
     /// How the world misled robots: the options that differ from none.
     pub trouble: String,
-    /// What the explorer took its sensors for.
+    /// The explorer's model of its sensors.
     pub preset: Preset,
     /// Seed of the plan.
     pub seed: u64,

@@ -121,7 +121,7 @@ pub struct Conditions {
     pub sync: u32,
     /// Share of messages lost.
     pub loss: f64,
-    /// What the explorer took its sensors for.
+    /// The explorer's model of its sensors.
     pub preset: Preset,
     /// How the world misled robots; empty: not.
     pub trouble: String,

@@ -37,7 +37,7 @@ impl LinkArgs {
 
 /// The options that set [`Conditions`]. What is not given stays as it is.
 #[derive(Args, Clone)]
-#[command(next_help_heading = "Conditions, and what goes wrong")]
+#[command(next_help_heading = "Conditions and faults")]
 pub struct ConditionsArgs {
     /// How robots tell each other what they know: in radio frames of at most 55 bytes, or
     /// ideally, everything at once as in the papers. Default: radio.
@@ -84,7 +84,7 @@ pub struct ConditionsArgs {
     /// ROBOT@TICK: this robot (from 0) dies in this tick. May be given again.
     #[arg(long, value_name = "ROBOT@TICK")]
     kill: Vec<Event>,
-    /// ROBOT@TICK: this robot is not there before this tick. May be given again.
+    /// ROBOT@TICK: this robot arrives in this tick. May be given again.
     #[arg(long, value_name = "ROBOT@TICK")]
     late: Vec<Event>,
     /// ROBOT@TICK: this robot starts anew where it is, with an empty map, also
@@ -115,8 +115,8 @@ pub struct ConditionsArgs {
     /// again.
     #[arg(long, value_name = "ROBOT@FROM-UNTIL")]
     pose_lost: Vec<RobotSpan>,
-    /// What robots take their sensors for: truthful (always right), lidar (errors come and
-    /// go) or rangers (errors hang on the place). The explorer's alone. Default: truthful.
+    /// The robots' model of their sensors: truthful (always right), lidar (errors come and
+    /// go) or rangers (errors depend on the place). Explorer only. Default: truthful.
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
     #[command(flatten)]

@@ -19,7 +19,7 @@ pub struct Scenario {
     pub world: Arc<World>,
     /// Where each robot starts; as many robots as starts, 1 to 255.
     pub starts: Vec<Cell>,
-    /// What decides in each robot.
+    /// The planner of each robot.
     pub planner: PlannerKind,
     /// Sensor range in cells, 1 to 31; more than 15 for planners that
     /// [see so far](PlannerKind::sees_far), and looks that do not err.

@@ -20,9 +20,9 @@ const APART: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Planner {
-    /// Pockets, a local choice on the map, coordinated frontiers: the best.
+    /// Pockets, local steps judged on the map, coordinated frontiers: the fastest.
     CoordinatedSurvey,
-    /// The same, its local choice by CAO's cubic.
+    /// The same, its local steps by CAO's cubic.
     CoordinatedCubic,
     /// FCAO as published.
     Fcao,

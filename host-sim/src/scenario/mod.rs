@@ -59,7 +59,7 @@ pub struct Conditions {
     /// How the world misleads robots.
     #[serde(default, skip_serializing_if = "Trouble::is_none")]
     pub trouble: Trouble,
-    /// What robots take their sensors for.
+    /// The robots' model of their sensors.
     #[serde(default, skip_serializing_if = "is_usual")]
     pub preset: Preset,
     /// What robots are sent out with.

@@ -176,9 +176,9 @@ fn room(clearance: u8) -> f64 {
 enum Kind {
     /// A cell a tick.
     Unit,
-    /// As [`Drive::DiffDrive`].
+    /// Two wheels, as a TurtleBot3 Burger.
     DiffDrive,
-    /// As [`Drive::Omni`].
+    /// To any side, as a drone.
     Omni,
 }
 

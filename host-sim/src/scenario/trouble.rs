@@ -31,7 +31,7 @@ pub struct Trouble {
     /// People who walk about at random, a step a tick at most. They are seen as blocked, hide what is behind them, and
     /// nobody can enter their cells.
     pub people: u16,
-    /// Doors that are open and shut by turns, in passages one cell wide; fewer where the
+    /// Doors that open and close in turn, in passages one cell wide; fewer where the
     /// world has fewer passages. A shut door is seen as blocked.
     pub doors: u16,
     /// Whether robots see each other as blocked cells.
@@ -86,7 +86,7 @@ pub enum Preset {
     Truthful,
     /// Errors that come and go, three looks or more a step.
     Lidar,
-    /// Errors that hang on the place, one look a step.
+    /// Errors that depend on the place, one look a step.
     Rangers,
 }
 
@@ -193,7 +193,7 @@ impl fmt::Display for Trouble {
 
 /// The options that set [`Trouble`]. What is not given stays as it is.
 #[derive(Args, Clone, Default)]
-#[command(next_help_heading = "A world that misleads")]
+#[command(next_help_heading = "Errors of sensors, people and doors")]
 pub struct TroubleArgs {
     /// Probability that a look shows a free cell as blocked, for each cell in view, 0 to 1.
     #[arg(long, value_name = "P", value_parser = parse_share)]
@@ -214,7 +214,7 @@ pub struct TroubleArgs {
     /// People who walk about: seen as blocked, and in the way.
     #[arg(long, value_name = "N")]
     people: Option<u16>,
-    /// Passages one cell wide that are open and shut by turns.
+    /// Passages one cell wide that open and close in turn.
     #[arg(long, value_name = "N")]
     doors: Option<u16>,
     /// Robots see each other as blocked cells.

@@ -6,8 +6,8 @@ use anyhow::{Context, Result, bail};
 
 use crate::shell::{Command, cargo, command, root};
 use crate::{
-    c_interface, c_library, crazyflie, documents, figures, firmware, fuzz, host, install, lab,
-    notices, output, ros, site, slurm, worst,
+    c_interface, c_library, crazyflie, documents, embassy, figures, firmware, fuzz, host, install,
+    lab, notices, output, ros, site, slurm, worst,
 };
 
 /// One thing that must hold.
@@ -264,6 +264,11 @@ const CHECKS: &[Check] = &[
         name: "example",
         title: "the robot to start from explores in the emulator, and its logs can be read",
         run: firmware::example_explores,
+    },
+    Check {
+        name: "embassy",
+        title: "the robot on embassy links for both of its chips",
+        run: embassy::links,
     },
     Check {
         name: "miri",

@@ -42,6 +42,7 @@ fn documents() -> Result<Vec<PathBuf>> {
         "firmware",
         "xtask",
         "examples/crazyflie",
+        "examples/embassy",
     ] {
         folders.extend(Some(shell::root().join(name)).filter(|folder| folder.is_dir()));
     }

@@ -33,6 +33,7 @@ mod c_stack;
 mod checks;
 mod crazyflie;
 mod documents;
+mod embassy;
 mod figures;
 mod firmware;
 mod fuzz;

@@ -473,7 +473,8 @@ PlannerResult planner_go_to(Planner *planner, PlannerCell cell);
 // exploring. Without this call there is no limit.
 //
 // Stack: 128 bytes.
-PlannerResult planner_energy(Planner *planner, uint32_t steps);
+PlannerResult planner_energy(Planner *planner,
+                             uint32_t steps);
 
 // Whether a robot that stopped for this reason, a `PlannerStop`, knows everything that
 // it could reach within its map; otherwise it gave up.

@@ -7,7 +7,7 @@ use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
-use host_sim::scenario::voxels::Scenario as VoxelScenario;
+use host_sim::scenario::voxels::{Planner as VoxelPlanner, Scenario as VoxelScenario};
 use host_sim::scenario::{Event, MediumKind};
 use host_sim::scene::octree::OcTree;
 use host_sim::scene::{self, Scene};
@@ -257,6 +257,33 @@ fn frames_carry_voxels() {
     };
     let (ideal, radio) = (ticks(MediumKind::Ideal), ticks(MediumKind::Radio));
     assert!(radio * 10 <= ideal * 12, "{radio} {ideal}");
+}
+
+/// What the planner is compared with sees all of a town as well, by the ideal medium and by
+/// radio, and ends for reasons that hold.
+#[test]
+fn baselines_among_voxels_see_all_and_stop_truthfully() {
+    for (planner, robots, medium) in [
+        (VoxelPlanner::ClosestFrontier, 1, MediumKind::Ideal),
+        (VoxelPlanner::ClosestFrontier, 2, MediumKind::Radio),
+        (VoxelPlanner::Greedy, 3, MediumKind::Ideal),
+        (VoxelPlanner::Greedy, 2, MediumKind::Radio),
+    ] {
+        let mut scenario = VoxelScenario::new(robots, 1);
+        scenario.planner = planner;
+        scenario.conditions.medium = medium;
+        let trace = voxels::run(&Scene::town(2, 20), &scenario).unwrap();
+        assert!(trace.complete(), "{planner:?} {robots} {medium:?}");
+        assert!(trace.all_stopped);
+        for stop in &trace.stops {
+            let is_complete = stop.is_some_and(|stop| stop.reason().is_complete());
+            assert!(is_complete, "{stop:?}");
+        }
+        let mut file = Vec::new();
+        trace.write(&mut file).unwrap();
+        let read = VoxelTrace::read(&file[..]).unwrap();
+        assert_eq!(read.scenario, trace.scenario);
+    }
 }
 
 /// Robots share out the search for the last voxels too: three take less than half as

@@ -411,6 +411,9 @@ fn metres_and_seconds_are_told_wherever_a_cell_has_metres() {
 
     let plain = run("--terrain town:1 --size 8 --range 4");
     assert_eq!(are_there(), [false; 3]);
+    assert_eq!(plain["planner"], "voxel-survey");
+    let greedy = run("--terrain town:1 --size 8 --range 4 --planner greedy");
+    assert_eq!(greedy["planner"], "greedy");
     let town = run(&format!("--terrain town:1 --size 8 --range 4 {metric}"));
     assert_eq!(town["trace_digest"], plain["trace_digest"]);
     assert_eq!(

@@ -11,6 +11,7 @@ mod minpos;
 mod peer;
 pub mod surveys;
 mod utility;
+pub mod voxels;
 mod waves;
 
 pub use bmilrv::{Bmilrv, Marks};

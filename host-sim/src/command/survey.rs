@@ -39,7 +39,7 @@ const TOWN: u16 = 64;
 pub(crate) struct Survey {
     /// gaussian:SEED, urban:SEED, a grey image (heights in quarters of a cell), a GeoTIFF or an
     /// ESRI ASCII grid (.tif, .asc, metres) or an OctoMap .bt or .ot file, of 1 to 512 columns
-    /// on a side. town:SEED is a town of voxels with rooms and bridges: there another planner flies, a voxel a step, and --planner,
+    /// on a side. town:SEED is a town of voxels with rooms and bridges: there another planner flies, a voxel a step, and
     /// --step, --min-altitude, --ceiling and --skip are refused.
     #[arg(long, value_name = "WHERE", default_value = "gaussian:0")]
     terrain: TerrainSource,
@@ -79,7 +79,8 @@ pub(crate) struct Survey {
     /// of voxels 8 to 64, default 64.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(8..=512))]
     size: Option<u16>,
-    /// How the robots decide. Default: coordinated-survey.
+    /// How the robots decide. Default: coordinated-survey; among voxels voxel-survey, which
+    /// closest-frontier and greedy are there to be compared with.
     #[arg(long, value_enum, hide_default_value = true)]
     planner: Option<Planner>,
     /// Number of robots.
@@ -209,6 +210,7 @@ impl Survey {
     fn run_in(self, scene: &Scene) -> Done {
         self.ways.check(scene.frame().is_some())?;
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
+        scenario.planner = self.planner_for_voxels()?;
         scenario.range = self.range as u8;
         scenario.start = match self.start {
             Some(start) => Some(start.voxel(scene)?),
@@ -257,10 +259,23 @@ impl Survey {
         self.conditions.clone().set(conditions)
     }
 
+    /// # Errors
+    /// A planner that flies over heights alone.
+    fn planner_for_voxels(&self) -> Result<voxels::Planner, String> {
+        match self.planner {
+            None => Ok(voxels::Planner::VoxelSurvey),
+            Some(Planner::ClosestFrontier) => Ok(voxels::Planner::ClosestFrontier),
+            Some(Planner::Greedy) => Ok(voxels::Planner::Greedy),
+            Some(planner) => Err(format!(
+                "--planner {planner} does not apply in a town or another scene of voxels; leave it \
+                 out, or compare with closest-frontier or greedy"
+            )),
+        }
+    }
+
     /// Nothing that a survey of voxels would have to ignore or round.
     fn check_for_voxels(&self) -> Result<(), String> {
         let given = [
-            ("planner", self.planner.is_some()),
             ("step", self.step.is_some()),
             ("min-altitude", self.min_altitude.is_some()),
             ("ceiling", self.ceiling.is_some()),
@@ -268,8 +283,8 @@ impl Survey {
         ];
         if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
             return Err(format!(
-                "--{option} does not apply in a town of voxels, where one planner flies a voxel \
-                 a step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
+                "--{option} does not apply in a town of voxels, where robots fly a voxel a \
+                 step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
             ));
         }
         if let Some(size) = self.size.filter(|&size| size > TOWN) {

@@ -1,6 +1,7 @@
 //! Runs in a scene of voxels: sense, share, decide in turn, fly; until every living robot
 //! has stopped.
 
+mod follower;
 mod pilot;
 
 use std::collections::BTreeSet;
@@ -12,12 +13,13 @@ use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
+use crate::baselines::voxels::{Union, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::voxels::{Record, VoxelTrace};
 use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
-use crate::scenario::voxels::Scenario;
+use crate::scenario::voxels::{Planner, Scenario};
 use crate::scenario::{Faults, MediumKind, ScenarioError};
 use crate::scene::{Marks, Scene, look, visible};
 use pilot::{Pilot, pilot};
@@ -145,6 +147,8 @@ pub struct Simulation {
     radio: Radio<Scene>,
     visible: Marks,
     known: Marks,
+    /// What a centre knows that sends the robots.
+    centre: Option<Union>,
     /// Occupied voxels seen.
     seen: u32,
     now: u32,
@@ -165,7 +169,11 @@ impl Simulation {
         };
         let robot = |id| {
             let id = RobotId(id as u8);
-            Ok(Robot::new(id, start, pilot(scene, config, id)?))
+            Ok(Robot::new(
+                id,
+                start,
+                pilot(scene, config, scenario.planner, id)?,
+            ))
         };
         let robots = (0..scenario.robots).map(robot);
         let robots = robots.collect::<Result<_, ExtentError>>()?;
@@ -191,6 +199,8 @@ impl Simulation {
             },
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
+            centre: (scenario.planner == Planner::Greedy)
+                .then(|| Union::new(scene.extent(), scene.levels())),
             scene,
             visible,
             seen: 0,
@@ -218,6 +228,7 @@ impl Simulation {
         self.sense();
         self.share();
         self.trace.seen.push(self.seen);
+        self.send();
         for i in 0..self.robots.len() {
             if self.robots[i].alive {
                 self.act(i);
@@ -249,7 +260,8 @@ impl Simulation {
             robot.alive = faults.is_alive(robot.id, self.now);
             robot.sent = Sent::default();
             if robot.alive && Faults::befalls(&faults.restarts, robot.id, self.now) {
-                let planner = pilot(&self.scene, self.config, robot.id);
+                let how = self.trace.scenario.planner;
+                let planner = pilot(&self.scene, self.config, how, robot.id);
                 robot.planner = planner.expect("it was set up like this before");
                 robot.stopped = false;
             }
@@ -271,6 +283,21 @@ impl Simulation {
                 }
             }
             robot.planner.observe(robot.at, &robot.view);
+            if let Some(centre) = &mut self.centre {
+                centre.learn(&robot.view);
+            }
+        }
+    }
+
+    /// The centre, where there is one, tells every robot where to fly.
+    fn send(&mut self) {
+        let Some(centre) = &self.centre else { return };
+        let alive = || self.robots.iter().filter(|robot| robot.alive);
+        let places: Vec<Voxel> = alive().map(|robot| robot.at).collect();
+        let (steps, work) = assign(centre, &places, self.config.range);
+        let alive = self.robots.iter_mut().filter(|robot| robot.alive);
+        for (robot, to) in alive.zip(steps) {
+            robot.planner.obey(to, work);
         }
     }
 

@@ -1,5 +1,6 @@
 //! Surveys of a scene of voxels.
 
+use clap::ValueEnum;
 use planner_core::volume::Voxel;
 use planner_core::voxel_survey::MAX_RANGE;
 use serde::{Deserialize, Serialize};
@@ -7,9 +8,45 @@ use serde::{Deserialize, Serialize};
 use super::{Conditions, ScenarioError};
 use crate::scene::{LARGEST, LEVELS, Scene};
 
+/// How the robots decide.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    PartialOrd,
+    Ord,
+    ValueEnum,
+    Serialize,
+    Deserialize,
+)]
+#[serde(rename_all = "kebab-case")]
+pub enum Planner {
+    /// The complete planner of the core.
+    #[default]
+    VoxelSurvey,
+    /// Every robot to the nearest place that shows a frontier, chosen anew in every step.
+    ClosestFrontier,
+    /// A centre that knows all that anybody has seen assigns groups of frontiers to robots,
+    /// the shortest way first; robots left over start another round.
+    Greedy,
+}
+
+impl Planner {
+    fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// What a run is a function of, beside the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scenario {
+    /// How the robots decide.
+    #[serde(default, skip_serializing_if = "Planner::is_usual")]
+    pub planner: Planner,
     /// Number of robots, 1 to 255.
     pub robots: usize,
     /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
@@ -26,6 +63,7 @@ impl Scenario {
     /// Range 8, no losses, and robots that share everything at once.
     pub fn new(robots: usize, seed: u64) -> Self {
         Self {
+            planner: Planner::default(),
             robots,
             range: 8,
             start: None,

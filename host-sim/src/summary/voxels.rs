@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::Head;
 use crate::record::voxels::VoxelTrace;
+use crate::scenario::voxels::Planner;
 use crate::scene::Free;
 
 /// What a survey of voxels came to; the keys are those of the others where they mean the
@@ -23,7 +24,7 @@ pub struct Summary {
     /// Flights that should not have been; anything but 0 is a bug of the planner.
     pub violations: u32,
     /// How the robots decided.
-    pub planner: &'static str,
+    pub planner: Planner,
     /// Sensor range in voxels.
     pub range: u8,
     /// Side of a voxel in metres, where the scene says so.
@@ -91,7 +92,7 @@ impl Summary {
             ticks_to_99: trace.ticks_to(0.99),
             mean_work_per_tick: work().map(f64::from).sum::<f64>() / work().len().max(1) as f64,
             violations: trace.violations,
-            planner: "voxel-survey",
+            planner: scenario.planner,
             range: scenario.range,
             voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
             free_space: trace.scene.free(),

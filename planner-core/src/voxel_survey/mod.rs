@@ -454,6 +454,17 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         action
     }
 
+    /// Lets a step pass in which somebody else decides where the robot flies, in place of
+    /// [`tick`](Self::tick).
+    pub fn pass(&mut self) {
+        self.work = 0;
+        self.waiting = Maybe::Nothing;
+        self.peers.age();
+        self.sender.tick();
+        self.stopped = false;
+        self.way.clear();
+    }
+
     fn decide(&mut self) -> Action<Voxel, Voxel> {
         let known = self.volume.known_voxels();
         if !core::mem::take(&mut self.looked) {

@@ -2,10 +2,12 @@
 
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Voxel, VoxelPatch};
+use planner_core::volume::{Content, Voxel, VoxelPatch};
 use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
+use super::follower::Follower;
+use crate::scenario::voxels::Planner;
 use crate::scene::Scene;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::scene::{LARGEST, LEVELS};
@@ -28,6 +30,11 @@ pub(super) trait Pilot: Send {
     fn patch(&self, tile: TileIndex, z: u8) -> VoxelPatch;
     fn after(&self, tile: TileIndex, z: u8) -> (TileIndex, u8);
     fn known_voxels(&self) -> u32;
+    fn content(&self, voxel: Voxel) -> Content;
+    /// Lets a step pass without a decision.
+    fn pass(&mut self);
+    /// Takes a centre's order, which cost `work` to find.
+    fn obey(&mut self, _to: Option<Voxel>, _work: u32) {}
     fn extent(&self) -> Extent;
     fn levels(&self) -> u8;
 }
@@ -81,6 +88,14 @@ impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW,
         self.volume().known_voxels()
     }
 
+    fn content(&self, voxel: Voxel) -> Content {
+        self.volume().content(voxel)
+    }
+
+    fn pass(&mut self) {
+        self.pass();
+    }
+
     fn extent(&self) -> Extent {
         self.volume().extent()
     }
@@ -90,16 +105,29 @@ impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW,
     }
 }
 
-/// A planner for `scene`: of the smallest of a few sizes that fits.
+/// A robot in `scene` that decides as `planner` does.
+///
+/// # Errors
+/// The scene is larger than the largest.
+pub(super) fn pilot(
+    scene: &Scene,
+    config: Config,
+    planner: Planner,
+    id: RobotId,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    let pilot = of_core(scene, config, id)?;
+    Ok(match planner {
+        Planner::VoxelSurvey => pilot,
+        Planner::ClosestFrontier | Planner::Greedy => Box::new(Follower::new(pilot, config.range)),
+    })
+}
+
+/// The planner of the core for `scene`: of the smallest of a few sizes that fits.
 ///
 /// # Errors
 /// The scene is larger than the largest.
 #[cfg(not(target_arch = "wasm32"))]
-pub(super) fn pilot(
-    scene: &Scene,
-    config: Config,
-    id: RobotId,
-) -> Result<Box<dyn Pilot>, ExtentError> {
+fn of_core(scene: &Scene, config: Config, id: RobotId) -> Result<Box<dyn Pilot>, ExtentError> {
     let Extent { width, height } = scene.extent();
     match (width.max(height), scene.levels()) {
         (0..=64, 0..=24) => survey::<8, 8, 24>(scene, config, id),
@@ -115,11 +143,7 @@ pub(super) fn pilot(
 /// # Errors
 /// The scene is larger.
 #[cfg(target_arch = "wasm32")]
-pub(super) fn pilot(
-    scene: &Scene,
-    config: Config,
-    id: RobotId,
-) -> Result<Box<dyn Pilot>, ExtentError> {
+fn of_core(scene: &Scene, config: Config, id: RobotId) -> Result<Box<dyn Pilot>, ExtentError> {
     survey::<8, 8, 24>(scene, config, id)
 }
 

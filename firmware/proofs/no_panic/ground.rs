@@ -7,7 +7,9 @@ use planner_core::local_frontiers::{self, LocalFrontiers};
 use planner_core::map::Map;
 use planner_core::radio::MAX_LEN;
 use planner_core::role::exchange;
-use planner_core::sight::{Beam, Bearing, Pose, RangeScan, RangeSensor, look};
+use planner_core::sight::{
+    Beam, Bearing, Distances, Pose, RangeScan, RangeSensor, Zone, ZoneSensor, look,
+};
 use planner_core::tile::TileIndex;
 use planner_core::{Activity, AnyPlanner, Contact, Motion, Planner, Sighting, Status};
 use static_cell::ConstStaticCell;
@@ -89,9 +91,26 @@ fn scan() -> Option<Sighting> {
             heading: 0.0,
         }),
         sensor: black_box(RangeSensor::new(4.0)),
-        beams,
+        beams: beams.into_iter().chain(zones()?),
     };
     scan.sighting().ok()
+}
+
+fn zones() -> Option<[Beam; 8]> {
+    let sensor = black_box(ZoneSensor {
+        distances: Distances::Radial,
+        field_of_view: 0.8,
+        max_range_mm: 2000,
+        yaw: 1.0,
+        pitch: 0.1,
+        ahead_mm: 10,
+        height_mm: 100,
+        floor_mm: 30,
+        top_mm: 150,
+        cell_mm: 100,
+    });
+    let zone = Zone::from_vl53(black_box(5), black_box(500));
+    Some(sensor.beams().ok()?.read(&black_box([zone; 64])))
 }
 
 fn seen() -> Sighting {

@@ -122,7 +122,7 @@ struct Row {
     reach: f32,
 }
 
-/// A sensor that is ready to be read: the geometry of its rows and columns, 196 bytes.
+/// A sensor that is ready to be read: the geometry of its rows and columns, 200 bytes.
 ///
 /// ```
 /// use planner_core::Cell;

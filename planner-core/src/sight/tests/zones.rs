@@ -208,6 +208,11 @@ fn radial_distances_are_converted() {
 }
 
 #[test]
+fn its_geometry_takes_as_much_as_it_says() {
+    assert_eq!(size_of::<ZoneBeams>(), 200);
+}
+
+#[test]
 fn statuses_are_told_apart() {
     assert_eq!(Zone::from_vl53(5, 300), Zone::At(300));
     assert_eq!(Zone::from_vl53(9, 300), Zone::At(300));

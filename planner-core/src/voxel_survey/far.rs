@@ -5,7 +5,7 @@ use crate::tile::TileIndex;
 use crate::volume::{Layer, Volume, Voxel, beside};
 
 /// Work of a word that the wave may enter, and of a step back.
-const WORD: u32 = 4;
+const WORD: u32 = 7;
 const BACK: u32 = 16;
 
 /// The northernmost and the southernmost row of a tile.

@@ -27,8 +27,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let mut view = View::new(pose, self.range);
         let mut gain = 0u32;
         if view.aim(|tile, z| volume.unknown(tile, z)) {
-            view.block(|tile, z| volume.occupied(tile, z));
             let _ = view.look(
+                |tile, z| volume.occupied(tile, z),
                 |tile, z| volume.unknown(tile, z),
                 |row| {
                     gain = gain.saturating_add(row.count());
@@ -55,12 +55,15 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if !view.aim(|tile, z| unknown(tile, z) & !missed.word(tile, z)) {
             return;
         }
-        view.block(|tile, z| volume.bad(tile, z));
-        let _ = view.look(unknown, |row| {
-            self.has_missed = true;
-            row.voxels().for_each(|voxel| missed.set(voxel));
-            ControlFlow::Continue(())
-        });
+        let _ = view.look(
+            |tile, z| volume.bad(tile, z),
+            unknown,
+            |row| {
+                self.has_missed = true;
+                row.voxels().for_each(|voxel| missed.set(voxel));
+                ControlFlow::Continue(())
+            },
+        );
     }
 }
 

@@ -81,7 +81,7 @@ const WAY: usize = 64;
 
 /// Work after which a step begins no further view: some 160 instructions each on a
 /// Cortex-M4.
-const SLICE: u32 = 40_960;
+const SLICE: u32 = 43_008;
 
 /// Work of a word of which the poses are found.
 const WORD: u32 = 10;
@@ -100,6 +100,7 @@ pub const MAX_RANGE: u8 = MAX_REACH;
 
 /// What a fleet agrees on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
     /// Sensor range in voxels, 2 to [`MAX_RANGE`]; others are brought into these bounds.
     pub range: u8,
@@ -263,7 +264,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.position
     }
 
-    /// Work of the last [`tick`](Self::tick): words and rows of voxels looked at, and 2 for
+    /// Work of the last [`tick`](Self::tick): words and rows of voxels looked at, and 3 for
     /// each ray. Some 160 instructions each on a Cortex-M4.
     pub const fn work(&self) -> u32 {
         self.work
@@ -439,7 +440,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Every later tick returns the same, until the robot hears of more, or
     /// [`resume`](Self::resume).
     ///
-    /// Cost: [`work`](Self::work) is at most 40,960, and a view that was begun before. A view
+    /// Cost: [`work`](Self::work) is at most 43,008, and a view that was begun before. A view
     /// looks at eight octants in rows, and walks at most one ray for each voxel in range.
     pub fn tick(&mut self) -> Action<Voxel, Voxel> {
         self.work = 0;

@@ -11,10 +11,10 @@ use crate::volume::Voxel;
 const POSES: usize = 512;
 
 /// Those of them whose view is looked at in one step.
-const VIEWS: usize = 24;
+const VIEWS: usize = 40;
 
 /// Unknown voxels in sight that are counted.
-const ENOUGH: u32 = 64;
+const ENOUGH: u32 = 128;
 
 /// Half of the side of the window that they lie in.
 const WINDOW: i16 = 16;
@@ -81,6 +81,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let mut places = Vec::new();
         self.find_places(&mut places);
         let best = loop {
+            self.work = self.work.saturating_add(places.len() as u32);
             let is_open = |place: &&Place| !self.done.get(place.at(here));
             let open = places.iter().filter(is_open).count();
             if open == 0 {

@@ -63,9 +63,9 @@ fn visible(walls: &BTreeSet<Voxel>, start: Voxel) -> BTreeSet<Voxel> {
 
 const START: Voxel = Voxel::new(5, 5, 4);
 
-/// The slice, and the view that was begun within it: twice two tiles by two of seven levels,
-/// 81 rows twice over, and a ray for each of 257 voxels within the range.
-const MOST_WORK: u32 = SLICE + 4 * 28 + 28 + 8 * 81 + 2 * 257;
+/// The slice, and the view that was begun within it: five times two tiles by two of seven
+/// levels, 81 rows eight times, and a ray for each of 257 voxels within the range.
+const MOST_WORK: u32 = SLICE + 32 + 5 * 28 + 8 * 81 + 3 * 257;
 
 type Scattered = BTreeSet<(i16, i16, i16)>;
 type Slabs = Vec<((i16, i16, i16), (i16, i16, i16))>;

@@ -61,10 +61,9 @@ proptest! {
         let (stops, asked) = (layer(|at| blocked.contains(&at)), layer(|at| wanted.contains(&at)));
         let mut view = View::new(eye, reach);
         view.aim(|tile, z| asked.word(tile, z));
-        view.block(|tile, z| stops.word(tile, z));
         let mut seen: Vec<Voxel> = Vec::new();
         let mut count = 0;
-        let ended = view.look(|tile, z| asked.word(tile, z), |row| {
+        let ended = view.look(|tile, z| stops.word(tile, z), |tile, z| asked.word(tile, z), |row| {
             count += row.count() as usize;
             seen.extend(row.voxels());
             ControlFlow::Continue(())
@@ -90,6 +89,7 @@ fn what_is_open_needs_no_ray() {
     assert!(view.aim(|_, _| !0));
     let mut rows = 0;
     let everything = view.look(
+        |_, _| 0,
         |_, _| !0,
         |_| {
             rows += 1;
@@ -97,7 +97,7 @@ fn what_is_open_needs_no_ray() {
         },
     );
     assert!(everything.is_continue() && rows > 300);
-    let first = view.look(|_, _| !0, |_| ControlFlow::Break(()));
+    let first = view.look(|_, _| 0, |_, _| !0, |_| ControlFlow::Break(()));
     assert!(first.is_break());
     // The words of 17 levels and the rows of two octants at most.
     assert!(view.work < 2000, "{}", view.work);

@@ -126,20 +126,6 @@ static void mistakes_are_answered(const PlannerConfig *config) {
     check(planner_tick(&robot, &action) == PLANNER_RESULT_NOT_CREATED, "still not created");
 }
 
-// Says why the robot stands still. These sensors look into all four directions; a robot
-// whose sensors do not is turned to `action->look`.
-static void explain(const PlannerAction *action) {
-    static const char *const REASONS[] = {
-        [PLANNER_WAIT_NONE] = "",
-        [PLANNER_WAIT_SIGHT] = "waits for a look\n",
-        [PLANNER_WAIT_POSE] = "waits for a place on the grid\n",
-        [PLANNER_WAIT_SEARCH] = "searches the map\n",
-        [PLANNER_WAIT_CLOSED] = "waits for a cell that refused a step\n",
-        [PLANNER_WAIT_LOOK] = "looks again\n",
-    };
-    board_print(REASONS[action->wait]);
-}
-
 int main(void) {
     PlannerCell at = {1, 1};
     const PlannerConfig config = {
@@ -165,7 +151,10 @@ int main(void) {
             return action.stop == PLANNER_STOP_COMPLETE ? 0 : 1;
         }
         if (action.kind == PLANNER_ACTION_KIND_WAIT) {
-            explain(&action);
+            // These sensors look into all four directions; a robot whose sensors do not is
+            // turned to `action.look`.
+            board_print(planner_wait_text(action.wait));
+            board_print("\n");
         }
         if (action.kind == PLANNER_ACTION_KIND_MOVE) {
             static const int8_t DX[] = {1, 0, -1, 0}, DY[] = {0, 1, 0, -1};

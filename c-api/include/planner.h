@@ -33,6 +33,10 @@
 #define PLANNER_CELL_SET_WORDS 256
 #endif
 
+// The tolerance of a range scan, in cells: for ranges in whole millimetres and a few
+// millimetres of error on cells of 50 mm and more.
+#define PLANNER_TOLERANCE 0.1f
+
 // The robot is on the cell that it was sent to.
 #define PLANNER_MOVED 0
 
@@ -44,10 +48,6 @@
 
 // The longest frame, in bytes.
 #define PLANNER_MAX_FRAME 55
-
-// The tolerance of a range scan, in cells: for ranges in whole millimetres and a few
-// millimetres of error on cells of 50 mm and more.
-#define PLANNER_TOLERANCE 0.1
 
 // Places that `planner_shut` names at most.
 #define PLANNER_MAX_SHUT 8
@@ -336,7 +336,8 @@ typedef struct {
   // `PLANNER_STOP_AT_EDGE`.
   uint32_t frontiers;
   // The cell that could not be entered, for `PLANNER_STOP_BLOCKED` and
-  // `PLANNER_STOP_HELD`, or be seen, for `PLANNER_STOP_UNSEEN`.
+  // `PLANNER_STOP_HELD`; or be seen, for `PLANNER_STOP_UNSEEN`; or that the robot was sent
+  // to, for `PLANNER_STOP_ARRIVED` and `PLANNER_STOP_NO_WAY`.
   PlannerCell at;
   // Why, for a wait.
   PlannerWait wait;
@@ -666,9 +667,12 @@ const char *planner_wait_text(uint8_t wait);
 static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
-#else
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 _Static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 _Static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 _Static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
+#else // Before C11: an array of -1 is no array.
+typedef char planner_compile_with_fshort_enums[sizeof(PlannerAction) == 16 ? 1 : -1];
+typedef char planner_has_its_own_size[sizeof(Planner) == 8 * PLANNER_WORDS ? 1 : -1];
 #endif
 #endif

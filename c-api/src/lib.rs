@@ -51,11 +51,6 @@ pub const PLANNER_HELD: u8 = 2;
 pub const PLANNER_MAX_FRAME: usize = 55;
 const _: () = assert!(PLANNER_MAX_FRAME == MAX_LEN);
 
-/// The tolerance of a range scan, in cells: for ranges in whole millimetres and a few
-/// millimetres of error on cells of 50 mm and more.
-pub const PLANNER_TOLERANCE: f32 = 0.1;
-const _: () = assert!(PLANNER_TOLERANCE == RangeSensor::TOLERANCE);
-
 /// Places that `planner_shut` names at most.
 pub const PLANNER_MAX_SHUT: usize = 8;
 const _: () = assert!(PLANNER_MAX_SHUT == MOST_PLACES);

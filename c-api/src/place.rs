@@ -88,9 +88,9 @@ const _: () = assert!(align_of::<Robot>() <= align_of::<Planner>());
 const CREATED: u32 = 0x9e37_79b1;
 
 impl Robot {
-    /// Whether a planner fits into so many bytes.
+    /// Whether a header that tells these bytes is that of this library.
     pub(crate) const fn fits(bytes: usize) -> bool {
-        bytes >= size_of::<Planner>()
+        bytes == size_of::<Planner>()
     }
 
     /// A planner without a map, in place.

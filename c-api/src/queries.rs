@@ -216,7 +216,7 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
 }
 
 /// By [`PlannerResult`].
-pub(crate) const RESULTS: [&CStr; 28] = [
+pub(crate) const RESULTS: [&CStr; 29] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
@@ -245,6 +245,7 @@ pub(crate) const RESULTS: [&CStr; 28] = [
     c"the save is damaged or cut short",
     c"the save is of another grid",
     c"the save is of another robot",
+    c"the grid was moved too often since the last stop",
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop).

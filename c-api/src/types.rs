@@ -447,7 +447,8 @@ pub struct PlannerAction {
     /// `PLANNER_STOP_AT_EDGE`.
     pub frontiers: u32,
     /// The cell that could not be entered, for `PLANNER_STOP_BLOCKED` and
-    /// `PLANNER_STOP_HELD`, or be seen, for `PLANNER_STOP_UNSEEN`.
+    /// `PLANNER_STOP_HELD`; or be seen, for `PLANNER_STOP_UNSEEN`; or that the robot was sent
+    /// to, for `PLANNER_STOP_ARRIVED` and `PLANNER_STOP_NO_WAY`.
     pub at: PlannerCell,
     /// Why, for a wait.
     pub wait: PlannerWait,

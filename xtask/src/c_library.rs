@@ -89,6 +89,8 @@ pub(crate) fn build(target: &str, cells: Cells) -> Result<PathBuf> {
     let path = library.with_file_name(cells.object());
     command("arm-none-eabi-objcopy")
         .args(["--wildcard", "--keep-global-symbol=planner_*"])
+        // What the compiler left for optimisers of its own kind: others cannot read it.
+        .args(["--remove-section=.llvmbc", "--remove-section=.llvmcmd"])
         .args([&whole, &path])
         .run()?;
     stands_alone(&path, &c_interface::functions(&header))?;

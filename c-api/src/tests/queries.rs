@@ -176,6 +176,30 @@ fn codes_have_words() {
         read(planner_wait_text(PlannerWait::Doubt as u8)),
         "doubts a wall"
     );
+    let header = include_str!("../../include/planner.h");
+    let named = |prefix: &str| -> Vec<u8> {
+        let entries = header
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix(prefix));
+        let code = |entry: &str| {
+            entry
+                .split_once(" = ")?
+                .1
+                .trim_end_matches(',')
+                .parse()
+                .ok()
+        };
+        entries.filter_map(code).collect()
+    };
+    let (results, waits) = (named("PLANNER_RESULT_"), named("PLANNER_WAIT_"));
+    assert!(results.len() > 20 && waits.len() > 5);
+    let is_told = |code: &u8| read(planner_result_text(*code)) != "unknown";
+    assert_eq!(results.iter().find(|code| !is_told(code)), None);
+    assert!(
+        waits
+            .iter()
+            .all(|&wait| read(planner_wait_text(wait)) != "unknown")
+    );
     for beyond in [crate::queries::RESULTS.len(), 255] {
         assert_eq!(read(planner_result_text(beyond as u8)), "unknown");
     }

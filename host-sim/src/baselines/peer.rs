@@ -197,7 +197,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Peer<TW, TH> {
         self.reach = self.reach.max(farthest.unwrap_or(0).isqrt() as u8);
         self.map.stand(self.position);
         let learnt = self.map.observe(sighting);
-        self.link.look(sighting);
+        if let Some((at, _)) = TileIndex::of(sighting.centre()) {
+            self.link.look(sighting, at, 0);
+        }
         self.link.announce(&mut self.map);
         self.learn(learnt)
     }

@@ -227,8 +227,8 @@ impl Evidence {
     }
 
     /// Takes in what was seen from a cell of the extent; `purpose` says what the robot
-    /// stands there for, `bodies` in which cells of a tile other robots may be, which a
-    /// sensor that sees them leaves out. Work: at most 25 tiles, each with its four
+    /// stands there for, `bodies` in which cells of a tile the look may show other
+    /// robots, which are left out. Work: at most 25 tiles, each with its four
     /// neighbours.
     pub(super) fn observe<const TW: usize, const TH: usize>(
         &mut self,

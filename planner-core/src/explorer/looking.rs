@@ -20,8 +20,8 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
         let purpose = self.purpose();
         let (around, others) = (&mut self.around, &self.others);
         let (clearance, now) = (around.clearance, around.now);
-        let bodies = |at: TileIndex| others.bodies(at, clearance, now);
         let (map, model) = (&mut around.map, &self.config.sensor);
+        let bodies = |at| others.bodies(at, clearance, now);
         self.evidence.observe(map, sighting, model, purpose, bodies)
     }
 
@@ -101,21 +101,16 @@ impl<const TW: usize, const TH: usize> Explorer<TW, TH> {
 
     /// Whether what a sensor sees in a cell may be another robot.
     fn is_body(&self, cell: Cell) -> bool {
-        let (around, sees_robots) = (&self.around, self.config.sensor.sees_robots);
-        let is_one = |(at, bit)| self.others.bodies(at, around.clearance, around.now) & bit != 0;
-        sees_robots && TileIndex::of(cell).is_some_and(is_one)
+        TileIndex::of(cell).is_some_and(|(at, bit)| self.bodies(at) & bit != 0)
     }
 
-    /// What a look shows blocked in a tile beyond the near window, without other robots.
-    pub(super) fn without_bodies(&self, at: TileIndex, blocked: u64) -> u64 {
-        match self.config.sensor.sees_robots && blocked != 0 {
-            true => {
-                blocked
-                    & !self
-                        .others
-                        .bodies(at, self.around.clearance, self.around.now)
-            }
-            false => blocked,
+    /// The cells of a tile in which a look may show other robots.
+    #[inline(never)] // thrice the same
+    pub(super) fn bodies(&self, at: TileIndex) -> u64 {
+        let (clearance, now) = (self.around.clearance, self.around.now);
+        match self.config.sensor.sees_robots {
+            true => self.others.bodies(at, clearance, now),
+            false => 0,
         }
     }
 }

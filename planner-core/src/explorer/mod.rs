@@ -547,7 +547,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for Explorer<TW, TH> {
             self.go_on();
         }
         self.others.purse.saw(learnt.cells);
-        self.link.look(sighting);
+        if let Some((at, _)) = TileIndex::of(centre) {
+            self.link.look(sighting, at, self.bodies(at));
+        }
         self.link.announce(&mut self.around.map);
         self.learn(learnt);
         learnt
@@ -634,7 +636,7 @@ impl<const TW: usize, const TH: usize> LongSight<TW, TH> for Explorer<TW, TH> {
         if self.is_astray {
             return Learnt::default();
         }
-        let blocked = self.without_bodies(at, blocked);
+        let blocked = blocked & !self.bodies(at);
         let wall = self.config.sensor.far_wall();
         let learnt = self.around.map.observe_far(at, free, blocked, wall);
         self.others.purse.saw(learnt.cells);

@@ -149,12 +149,15 @@ impl Others {
         self.heard().filter(|_| !self.purse.is_empty())
     }
 
-    /// The cells of a tile in which robots may be seen that were heard just now, or that have
-    /// stopped. Work: the list once.
+    /// The cells of a tile in which a sensor that sees robots may show those that were heard
+    /// just now, or that have stopped. Work: the list once.
     #[inline(never)] // most robots see no others
     pub(crate) fn bodies(&self, at: TileIndex, clearance: u8, now: u32) -> u64 {
-        let bodies = self.list.iter().map(|other| other.body(at, clearance, now));
-        bodies.fold(0, |cells, body| cells | body)
+        let mut cells = 0;
+        for other in &self.list {
+            cells |= other.body(at, clearance, now);
+        }
+        cells
     }
 
     /// Whether the robot knows where every other one went that it has heard of.

@@ -45,7 +45,7 @@ use crate::planner::{Contact, Errands, Inspect, LongSight, Persist, Planner};
 use crate::radio::{FrameError, Heard, Hearsay, Link, MAX_LEN};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
 use crate::sight::{MAX_RADIUS, Sighting};
-use crate::tile::TileSet;
+use crate::tile::{TileIndex, TileSet};
 
 use closed::Closed;
 pub use config::{Config, Distance, Neighbourhood};
@@ -231,7 +231,9 @@ impl<const TW: usize, const TH: usize> Planner<TW, TH> for LocalFrontiers<TW, TH
         self.position = sighting.centre();
         self.view = View::of(sighting);
         let learnt = self.map.observe(sighting);
-        self.link.look(sighting);
+        if let Some((at, _)) = TileIndex::of(self.position) {
+            self.link.look(sighting, at, 0);
+        }
         self.link.announce(&mut self.map);
         self.note(learnt)
     }

@@ -75,13 +75,10 @@ impl Witness {
         }
     }
 
-    /// The robot has looked. Work: eight rows.
-    pub(crate) fn look(&mut self, sighting: &Sighting) {
-        let Some((at, _)) = TileIndex::of(sighting.centre()) else {
-            return;
-        };
-        self.at = at;
-        (self.free, self.blocked) = sighting.tile(at);
+    /// The robot has looked from this tile, in which `robots` are no walls. Work: eight rows.
+    pub(crate) fn look(&mut self, sighting: &Sighting, at: TileIndex, robots: u64) {
+        let (free, blocked) = sighting.tile(at);
+        (self.at, self.free, self.blocked) = (at, free, blocked & !robots);
     }
 
     /// Counts what `sender` tells otherwise. Call it before the record is joined.

@@ -97,9 +97,10 @@ impl<const TH: usize> Link<TH> {
         self.outbox.add(&map.take_changed());
     }
 
-    /// What the robot saw: what others tell is held against it. Work: eight rows.
-    pub fn look(&mut self, sighting: &Sighting) {
-        self.witness.look(sighting);
+    /// What the robot saw of the tile that it looked from, but for `robots` in it: what others
+    /// tell is held against it. Work: eight rows.
+    pub fn look(&mut self, sighting: &Sighting, at: TileIndex, robots: u64) {
+        self.witness.look(sighting, at, robots);
     }
 
     /// The map has learnt from others without a frame.

@@ -182,7 +182,8 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
     let sighting = look(here, 3, |cell| cell.x == 6);
     heard_by.observe(&sighting);
     heard_by.stand(here);
-    receiver.look(&sighting);
+    let (at, _) = TileIndex::of(here).unwrap();
+    receiver.look(&sighting, at, 0);
     let say =
         |receiver: &mut Small, heard_by: &mut Map<4, 4>, id, free: &[Cell], walls: &[Cell]| {
             let mut told = map();
@@ -222,6 +223,11 @@ fn what_others_told_first_and_what_speaks_against_it_is_counted() {
     let hearsay = receiver.hearsay();
     assert_eq!(hearsay.contradictions, 4);
     assert_eq!(hearsay.contradicted_by, Some(RobotId(4)));
+    // What it saw in column 6 there was another robot.
+    let (_, body) = TileIndex::of(cell(6, 5)).unwrap();
+    receiver.look(&sighting, at, body);
+    say(&mut receiver, &mut heard_by, 4, &[cell(6, 5)], &[]);
+    assert_eq!(receiver.hearsay().contradictions, 4);
     receiver.joined(Learnt {
         cells: 7,
         closed: 0,

@@ -62,10 +62,9 @@ fn survey_of(scenario: &str) -> String {
     if let Some(scene) = terrain.scene(side) {
         assert_eq!(planner, "voxel-survey");
         let scenario = voxels::Scenario {
-            robots,
             range: 6,
-            start: None,
             conditions,
+            ..voxels::Scenario::new(robots, 0)
         };
         let trace = run::voxels::run(&scene, &scenario).unwrap();
         return format!("{} {}", trace.seen.len() - 1, trace.digest());

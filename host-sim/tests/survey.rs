@@ -13,7 +13,7 @@ use host_sim::scene::octree::OcTree;
 use host_sim::scene::{self, Scene};
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
-use planner_core::volume::Content;
+use planner_core::volume::{Content, Field};
 use planner_core::{Cell, Direction, Extent, Point, Reason, Stop};
 use proptest::prelude::*;
 
@@ -26,6 +26,19 @@ const ALL: [Planner; 8] = [
     Planner::GreedyUnique,
     Planner::GreedyInOrder,
     Planner::ClosestUntilReached,
+];
+
+const FIELDS: [Field; 5] = [
+    Field::ALL_ROUND,
+    Field::CAMERA,
+    Field::DOWNWARD,
+    Field::LIDAR,
+    Field {
+        up: 0,
+        down: 700,
+        side: Some(110),
+        near: 3,
+    },
 ];
 
 const OWN: [Planner; 3] = [
@@ -439,7 +452,8 @@ fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Whatever share of the frames is lost, all of them too: everything that can be seen
+    /// Whatever share of the frames is lost, all of them too, and whatever the sensors show
+    /// at once: everything that can be seen
     /// of a scene of voxels is seen, and every robot stops.
     #[test]
     fn losses_leave_no_voxel_unseen(
@@ -448,6 +462,7 @@ proptest! {
         loss in prop_oneof![Just(0.0), Just(1.0), 0.0..1.0],
         byte_budget in prop::sample::select(&[0u16, 20, 55, 275][..]),
         seed in 0u64..1000,
+        field in prop::sample::select(&FIELDS[..]),
     ) {
         let scene = Scene::from_fn("slabs", Extent::new(14, 13), 8, |v| {
             slabs.iter().any(|&((x, y, z), (wide, deep, high))| {
@@ -456,6 +471,7 @@ proptest! {
         });
         let mut scenario = VoxelScenario::new(robots, seed);
         scenario.range = 4;
+        scenario.field = field;
         scenario.conditions.medium = MediumKind::Radio;
         scenario.conditions.byte_budget = byte_budget;
         scenario.conditions.loss = loss;

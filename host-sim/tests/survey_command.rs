@@ -488,6 +488,13 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             "--scene rooms.bt --metres-per-cell 1",
             ["--metres-per-cell", "--scene"],
         ),
+        ("--sensor downward", ["--sensor", "among voxels"]),
+        ("--fov 90x60", ["--fov", "among voxels"]),
+        ("--scene rooms.bt --fov 90x60", ["--fov", "--sensor camera"]),
+        (
+            "--scene rooms.bt --sensor camera --fov 30x60",
+            ["--fov", "45 to 170"],
+        ),
     ] {
         assert_refused(path, arguments, &words);
     }

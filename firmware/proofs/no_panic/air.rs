@@ -8,7 +8,7 @@ use planner_core::radio::MAX_LEN;
 use planner_core::surface::{Column, Height, Patch};
 use planner_core::survey::{Limits, Surveyor};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Voxel, VoxelPatch};
+use planner_core::volume::{Field, Voxel, VoxelPatch};
 use planner_core::voxel_survey::{self, VoxelSurvey};
 use planner_core::{Activity, Motion, Point, Status};
 use static_cell::ConstStaticCell;
@@ -75,6 +75,7 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Surveyor<TW, TH>) {
 fn fly_among_voxels() {
     let config = black_box(voxel_survey::Config {
         range: 4,
+        field: Field::CAMERA,
         link: any::link(),
     });
     let levels = black_box(8);

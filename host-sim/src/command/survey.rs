@@ -16,13 +16,13 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
-use host_sim::scene::{Frame, Free, Scene, SceneOptions};
+use host_sim::scene::{Fov, Frame, Free, Scene, SceneOptions, Sensor};
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
 use host_sim::terrain::{TerrainOptions, TerrainSource};
 use indicatif::ProgressBar;
 use planner_core::survey::Limits;
-use planner_core::volume::Voxel;
+use planner_core::volume::{Field, Voxel};
 use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
@@ -90,6 +90,15 @@ pub(crate) struct Survey {
     /// whole number from 2.
     #[arg(long, value_name = "R", default_value_t = 8.0)]
     range: f32,
+    /// What robots see among voxels: everything around them; what is before a depth camera
+    /// (--fov), which turns to one of eight sides, a quarter turn a step; what is no higher
+    /// than they are; or their own level. All feel what is within two voxels.
+    #[arg(long, value_enum, value_name = "KIND", hide_default_value = true)]
+    sensor: Option<Sensor>,
+    /// Width and height of the image of --sensor camera in degrees: 45 to 170 and 1 to 170.
+    /// Default: 90x60.
+    #[arg(long, value_name = "WxH")]
+    fov: Option<Fov>,
     /// Longest flight in a step, 0.1 to 100 cells. Default: 2.
     #[arg(long, value_name = "A")]
     step: Option<f32>,
@@ -128,12 +137,17 @@ impl Survey {
             let scene = self.in_metres(scene)?;
             return self.run_in(&scene);
         }
-        if self.start.is_some() {
-            return Err(
-                "--start applies among voxels alone; leave it out, or choose --scene \
-                        FILE or town:SEED"
-                    .into(),
-            );
+        let among_voxels = [
+            ("start", self.start.is_some()),
+            ("sensor", self.sensor.is_some()),
+            ("fov", self.fov.is_some()),
+        ];
+        if let Some((option, _)) = among_voxels.iter().find(|(_, given)| *given) {
+            return Err(format!(
+                "--{option} applies among voxels alone; leave it out, or choose --scene \
+                 FILE or town:SEED"
+            )
+            .into());
         }
         if self.size.is_some() && matches!(self.terrain, TerrainSource::File(_)) {
             return Err(
@@ -212,6 +226,7 @@ impl Survey {
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
         scenario.planner = self.planner_for_voxels()?;
         scenario.range = self.range as u8;
+        scenario.field = self.field();
         scenario.start = match self.start {
             Some(start) => Some(start.voxel(scene)?),
             // A town with metres is flown from where it is without.
@@ -259,6 +274,11 @@ impl Survey {
         self.conditions.clone().set(conditions)
     }
 
+    fn field(&self) -> Field {
+        let sensor = self.sensor.unwrap_or_default();
+        sensor.field(self.fov.unwrap_or_default())
+    }
+
     /// # Errors
     /// A planner that flies over heights alone.
     fn planner_for_voxels(&self) -> Result<voxels::Planner, String> {
@@ -286,6 +306,11 @@ impl Survey {
                 "--{option} does not apply in a town of voxels, where robots fly a voxel a \
                  step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
             ));
+        }
+        if self.fov.is_some() && self.sensor != Some(Sensor::Camera) {
+            return Err(
+                "--fov is of a camera's image; add --sensor camera, or leave it out".into(),
+            );
         }
         if let Some(size) = self.size.filter(|&size| size > TOWN) {
             return Err(format!(

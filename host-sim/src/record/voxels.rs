@@ -3,7 +3,7 @@
 use planner_core::Stop;
 mod file;
 
-use planner_core::volume::Voxel;
+use planner_core::volume::{Heading, Voxel};
 
 use crate::scenario::voxels::Scenario;
 use crate::scene::octree::OcTree;
@@ -20,6 +20,8 @@ pub struct VoxelTrace {
     pub scene: Scene,
     /// Where each robot was, step by step from its start.
     pub ways: Vec<Vec<Voxel>>,
+    /// Where each robot's sensor was turned, step by step; empty if it shows all round.
+    pub headings: Vec<Vec<Heading>>,
     /// Every decision, in order.
     pub records: Vec<Record>,
     /// Voxels in the order in which they were seen, each with the step and with whether

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use planner_core::radio::{Key, MAX_LEN, VoxelFrame};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Voxel, VoxelPatch};
+use planner_core::volume::{Heading, Voxel, VoxelPatch};
 use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
@@ -21,17 +21,21 @@ use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
 use crate::scenario::voxels::{Planner, Scenario};
 use crate::scenario::{Faults, MediumKind, ScenarioError};
-use crate::scene::{Marks, Scene, look, visible};
+use crate::scene::{Marks, Scene, look_towards, visible};
 use pilot::{Pilot, pilot};
 
 /// Words of its map that a robot repeats in each step, in turn.
 const IN_TURN: usize = 16;
+
+/// How far a sensor turns in a step, in place or on the way, in eighths of a turn.
+const TURN: u8 = 2;
 
 /// A planner and the body that it moves.
 struct Robot {
     id: RobotId,
     planner: Box<dyn Pilot>,
     at: Voxel,
+    heading: Heading,
     alive: bool,
     stopped: bool,
     /// What it sees in this step.
@@ -48,6 +52,7 @@ impl Robot {
             id,
             planner,
             at,
+            heading: Heading::EAST,
             alive: false,
             stopped: false,
             view: Vec::new(),
@@ -165,6 +170,7 @@ impl Simulation {
         let start = scenario.start_in(scene)?;
         let config = Config {
             range: scenario.range,
+            field: scenario.field,
             link: scenario.conditions.link(),
         };
         let robot = |id| {
@@ -177,7 +183,7 @@ impl Simulation {
         };
         let robots = (0..scenario.robots).map(robot);
         let robots = robots.collect::<Result<_, ExtentError>>()?;
-        let visible = visible(scene, start, scenario.range);
+        let visible = visible(scene, start, scenario.range, scenario.field);
         if visible.count() == 0 {
             return Err(ScenarioError::NothingToSee);
         }
@@ -189,6 +195,10 @@ impl Simulation {
                 scenario: scenario.clone(),
                 scene: (*scene).clone(),
                 ways: vec![vec![start]; scenario.robots],
+                headings: match scenario.field.is_round() {
+                    true => Vec::new(),
+                    false => vec![vec![Heading::EAST]; scenario.robots],
+                },
                 records: Vec::new(),
                 found: Vec::new(),
                 visible: visible.count(),
@@ -244,6 +254,9 @@ impl Simulation {
         for (robot, way) in self.robots.iter().zip(&mut self.trace.ways) {
             way.push(robot.at);
         }
+        for (robot, headings) in self.robots.iter().zip(&mut self.trace.headings) {
+            headings.push(robot.heading);
+        }
         self.now += 1;
         true
     }
@@ -274,7 +287,8 @@ impl Simulation {
 
     fn sense(&mut self) {
         for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
-            robot.view = look(&self.scene, robot.at, self.config.range);
+            let Config { range, field, .. } = self.config;
+            robot.view = look_towards(&self.scene, robot.at, range, field, robot.heading);
             for &(voxel, occupied) in &robot.view {
                 // Where the scan ends robots see a wall; the map leaves it unknown.
                 if self.scene.is_known(voxel) && self.known.insert(&self.scene, voxel) {
@@ -282,7 +296,8 @@ impl Simulation {
                     self.seen += u32::from(self.visible.contains(&self.scene, voxel));
                 }
             }
-            robot.planner.observe(robot.at, &robot.view);
+            let Robot { at, heading, .. } = *robot;
+            robot.planner.observe(at, heading, &robot.view);
             if let Some(centre) = &mut self.centre {
                 centre.learn(&robot.view);
             }
@@ -354,6 +369,7 @@ impl Simulation {
         }
         let robot = &mut self.robots[i];
         robot.at = to;
+        robot.heading = robot.heading.turned(robot.planner.heading(), TURN);
         self.trace.records.push(Record {
             tick: self.now,
             robot: robot.id.0,

@@ -1,7 +1,7 @@
 //! Surveys of a scene of voxels.
 
 use clap::ValueEnum;
-use planner_core::volume::Voxel;
+use planner_core::volume::{Field, Voxel};
 use planner_core::voxel_survey::MAX_RANGE;
 use serde::{Deserialize, Serialize};
 
@@ -51,6 +51,9 @@ pub struct Scenario {
     pub robots: usize,
     /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
     pub range: u8,
+    /// What of that the robots' sensors show.
+    #[serde(default = "all_round", skip_serializing_if = "Field::is_whole")]
+    pub field: Field,
     /// Where all robots start; [`Scene::start`] if nothing is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub start: Option<Voxel>,
@@ -66,6 +69,7 @@ impl Scenario {
             planner: Planner::default(),
             robots,
             range: 8,
+            field: Field::ALL_ROUND,
             start: None,
             conditions: Conditions::flown(seed),
         }
@@ -81,6 +85,12 @@ impl Scenario {
         if !(2..=MAX_RANGE).contains(&self.range) {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));
+        }
+        if self.planner != Planner::VoxelSurvey && !self.field.is_whole() {
+            return Err(ScenarioError::NotHere {
+                option: "sensor",
+                world: "to what voxel-survey is compared with, which sees all round",
+            });
         }
         if let Some(start) = self.start {
             check_start(start, scene)?;
@@ -109,6 +119,10 @@ impl Scenario {
         let start = self.start.or_else(|| scene.start());
         start.ok_or(ScenarioError::NoPose)
     }
+}
+
+const fn all_round() -> Field {
+    Field::ALL_ROUND
 }
 
 /// # Errors

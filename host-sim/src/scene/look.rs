@@ -1,15 +1,29 @@
 //! What robots see of a scene.
 
-use planner_core::volume::{Content, Voxel, in_sight};
+use planner_core::volume::{Content, Field, Heading, Voxel, in_sight};
 
+use super::sensor::shows_part;
 use super::{Marks, Scene};
 
-/// What `eye` sees within `range` voxels, each with whether it is solid. A voxel that the
-/// scene does not know ends the sight like one that is occupied.
+/// What `eye` sees within `range` voxels in all directions, each with whether it is solid. A
+/// voxel that the scene does not know ends the sight like one that is occupied.
 pub fn look(scene: &Scene, eye: Voxel, range: u8) -> Vec<(Voxel, bool)> {
+    look_towards(scene, eye, range, Field::ALL_ROUND, Heading::EAST)
+}
+
+/// The same of a sensor with a field of view, turned to `heading`: of which it has a part in
+/// its field.
+pub(crate) fn look_towards(
+    scene: &Scene,
+    eye: Voxel,
+    range: u8,
+    field: Field,
+    heading: Heading,
+) -> Vec<(Voxel, bool)> {
     let mut seen = Vec::new();
     for voxel in around(eye, range) {
-        if let Some(content) = scene.content(voxel)
+        if shows_part(field, eye, heading, voxel)
+            && let Some(content) = scene.content(voxel)
             && in_sight(eye, voxel, |at| !scene.is_solid(at))
         {
             seen.push((voxel, content != Content::Free));
@@ -28,14 +42,17 @@ fn around(eye: Voxel, range: u8) -> impl Iterator<Item = Voxel> {
     voxels.filter(move |voxel| eye.distance_squared(*voxel) <= u32::from(range).pow(2))
 }
 
-/// The occupied voxels that can be seen from any place that can be reached from `start`.
+/// The occupied voxels that can be seen from any place that can be reached from `start`, in
+/// any heading, with their middle in the field.
 ///
 /// Cost: for each occupied voxel beside a free one, a ray to the nearest such place that
 /// sees it; to all within range if none does.
-pub(crate) fn visible(scene: &Scene, start: Voxel, range: u8) -> Marks {
+pub(crate) fn visible(scene: &Scene, start: Voxel, range: u8, field: Field) -> Marks {
     let reached = scene.reached(start);
     let centre = Voxel::new(0, 0, 0);
-    let mut offsets: Vec<Voxel> = around(centre, range).collect();
+    let mut offsets: Vec<Voxel> = around(centre, range)
+        .filter(|&eye| Heading::all().any(|heading| field.shows(eye, heading, centre)))
+        .collect();
     offsets.sort_by_key(|offset| centre.distance_squared(*offset));
     let mut visible = Marks::of(scene);
     for voxel in scene.voxels() {

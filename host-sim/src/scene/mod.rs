@@ -8,6 +8,7 @@ mod mesh;
 pub mod octree;
 mod pcd;
 mod ply;
+mod sensor;
 mod shape;
 mod space;
 mod stl;
@@ -21,8 +22,9 @@ use crate::dice::Dice;
 pub use error::SceneError;
 pub use file::SceneOptions;
 pub use look::look;
-pub(crate) use look::visible;
+pub(crate) use look::{look_towards, visible};
 pub(crate) use marks::Marks;
+pub use sensor::{Fov, Sensor};
 pub use shape::Free;
 
 /// A box of voxels. What a scan left unknown is neither free nor occupied: nothing flies

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::Head;
 use crate::record::voxels::VoxelTrace;
 use crate::scenario::voxels::Planner;
-use crate::scene::Free;
+use crate::scene::{Free, Sensor};
 
 /// What a survey of voxels came to; the keys are those of the others where they mean the
 /// same.
@@ -27,6 +27,8 @@ pub struct Summary {
     pub planner: Planner,
     /// Sensor range in voxels.
     pub range: u8,
+    /// What of that their sensors show.
+    pub sensor: String,
     /// Side of a voxel in metres, where the scene says so.
     pub voxel_size: Option<f64>,
     /// What counts as free where the file says only what is occupied.
@@ -94,6 +96,7 @@ impl Summary {
             violations: trace.violations,
             planner: scenario.planner,
             range: scenario.range,
+            sensor: Sensor::name_of(scenario.field),
             voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
             free_space: trace.scene.free(),
             speed: None,

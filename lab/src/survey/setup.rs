@@ -73,10 +73,9 @@ impl SurveySetup {
     /// The scenario in a town of voxels.
     pub fn voxel_scenario(&self) -> voxels::Scenario {
         voxels::Scenario {
-            robots: self.robots.into(),
             range: self.range,
-            start: None,
             conditions: self.conditions.clone(),
+            ..voxels::Scenario::new(self.robots.into(), 0)
         }
     }
 

@@ -6,10 +6,12 @@
 //! associative and idempotent. Outside of the box everything counts as known; nothing
 //! is there, and nothing flies there.
 
+mod field;
 mod layer;
 mod sight;
 mod view;
 
+pub use field::{Field, Heading};
 pub(crate) use layer::Layer;
 pub use sight::in_sight;
 pub(crate) use view::{MAX_REACH, View};

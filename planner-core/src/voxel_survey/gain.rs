@@ -4,35 +4,53 @@ use core::ops::ControlFlow;
 
 use super::VoxelSurvey;
 use crate::tile::{TileIndex, bits};
-use crate::volume::{View, Voxel};
+use crate::volume::{Heading, View, Voxel};
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Number of unknown voxels in sight of `pose` where unknown voxels do not block
-    /// sight, at most `enough`. At 0 the pose is done.
+    /// sight, at most `enough`; of a sensor that does not show all round, that of the best
+    /// heading. At 0 the pose is done.
     ///
     /// Cost: every tile of a level within range; a view, and its rays, if something there is
     /// unknown.
     pub(super) fn gain(&mut self, pose: Voxel, enough: u32) -> u32 {
-        let gain = self.count(pose, enough);
-        if gain == 0 {
+        self.best_heading(pose, enough).0
+    }
+
+    /// The same, and that heading. Headings that were looked at from there show nothing more.
+    pub(super) fn best_heading(&mut self, pose: Voxel, enough: u32) -> (u32, Heading) {
+        let best = self.count(pose, enough);
+        if best.0 == 0 {
             self.finish(pose);
         }
-        gain
+        best
     }
 
     // Not in line: one view at a time is on the stack.
     #[inline(never)]
-    fn count(&mut self, pose: Voxel, enough: u32) -> u32 {
-        let volume = &self.volume;
+    fn count(&mut self, pose: Voxel, enough: u32) -> (u32, Heading) {
+        let (volume, field) = (&self.volume, self.field);
+        let looked = self.looked_from(pose);
         let mut view = View::new(pose, self.range);
-        let mut gain = 0u32;
+        let mut most = 0u32;
+        let mut gains = Gains::default();
         if view.aim(|tile, z| volume.unknown(tile, z)) {
             let _ = view.look(
                 |tile, z| volume.occupied(tile, z),
                 |tile, z| volume.unknown(tile, z),
                 |row| {
-                    gain = gain.saturating_add(row.count());
-                    if gain < enough {
+                    if field.is_whole() {
+                        most = most.saturating_add(row.count());
+                    } else {
+                        for voxel in row.voxels() {
+                            let shown = field.headings(pose, voxel);
+                            if shown & looked == 0 {
+                                gains.add(shown);
+                            }
+                        }
+                        most = gains.best().0;
+                    }
+                    if most < enough {
                         ControlFlow::Continue(())
                     } else {
                         ControlFlow::Break(())
@@ -41,17 +59,18 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             );
         }
         self.work = self.work.saturating_add(view.work);
-        gain.min(enough)
+        (most.min(enough), gains.best().1)
     }
 
     /// Notes the voxels that the look from here should have shown and did not: unknown
-    /// ones beside a free one, in sight over free ones alone.
+    /// ones beside a free one, in the field, in sight over free ones alone.
     ///
     /// Cost: 28 words for every tile of a level within range, and a view if any is new.
-    pub(super) fn note_missed(&mut self) {
+    pub(super) fn note_missed(&mut self, heading: Heading) {
         let (volume, missed) = (&self.volume, &mut self.missed);
+        let (here, field) = (self.position, self.field);
         let unknown = |tile, z| volume.unknown_beside_free(tile, z);
-        let mut view = View::new(self.position, self.range);
+        let mut view = View::new(here, self.range);
         if !view.aim(|tile, z| unknown(tile, z) & !missed.word(tile, z)) {
             return;
         }
@@ -59,11 +78,39 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             |tile, z| volume.bad(tile, z),
             unknown,
             |row| {
-                self.has_missed = true;
-                row.voxels().for_each(|voxel| missed.set(voxel));
+                let shown = row.voxels();
+                for voxel in shown.filter(|&voxel| field.shows(here, heading, voxel)) {
+                    self.has_missed = true;
+                    missed.set(voxel);
+                }
                 ControlFlow::Continue(())
             },
         );
+    }
+}
+
+/// Voxels that a look would show, by heading.
+#[derive(Default)]
+struct Gains([u32; 8]);
+
+impl Gains {
+    fn add(&mut self, headings: u8) {
+        for (heading, gain) in Heading::all().zip(&mut self.0) {
+            if headings & heading.bit() != 0 {
+                *gain = gain.saturating_add(1);
+            }
+        }
+    }
+
+    /// The most, and the first heading that has it.
+    fn best(&self) -> (u32, Heading) {
+        let mut best = (0, Heading::EAST);
+        for (heading, &gain) in Heading::all().zip(&self.0) {
+            if gain > best.0 {
+                best = (gain, heading);
+            }
+        }
+        best
     }
 }
 

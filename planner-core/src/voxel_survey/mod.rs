@@ -19,8 +19,14 @@
 //! comes first: a search ends without a pose only if none of those that it reached shows
 //! anything, whoever is nearer.
 //!
-//! That rests on what a look shows: every voxel within range that is in sight over free
-//! ones. One that a look should have shown and did not is noted, and looked for from every
+//! A sensor that does not show all round ([`Field`]) looks in several directions, wherever it
+//! is turned: what can be seen is then what is in its field in some heading, and a pose is done
+//! once each heading was looked at, or shows nothing unknown. The robot turns while it flies
+//! and in place, there only to see more. Neighbours of neighbours are in sight as before if it
+//! feels what is within two voxels; else P is smaller.
+//!
+//! That rests on what a look shows: every voxel within range that is in the field and in sight
+//! over free ones. One that a look should have shown and did not is noted, and looked for from every
 //! pose that has it in sight; if it stays unknown, the stop is [`Stop::Unseen`] and names
 //! it. A voxel into which a step was not followed is *closed*, and poses beyond it are
 //! not those of the claim any more. When nothing else is left the closed ones are opened,
@@ -39,7 +45,9 @@
 //!    rival once, and begins anew only after progress; the way back gets shorter.
 //! 4. *On the way* each step that is followed uses it up. One that is not closes a
 //!    voxel, at most N in a round.
-//! 5. *At the end of a way* the robot is at its goal and looks: progress. Or the way was
+//! 5. *At the end of a way* the robot is at its goal and looks: progress, or with a sensor that
+//!    turns it stays and turns until one of its looks, at most 16 for each of eight headings,
+//!    shows something or the pose is done. Or the way was
 //!    longer than is remembered, or did not hold. After `PATIENCE` steps without
 //!    progress no rival counts and only the far search decides, for the nearest pose that
 //!    shows something: it gets nearer by a whole way each time, so it is reached.
@@ -62,6 +70,7 @@ mod gain;
 mod near;
 mod news;
 mod rounds;
+mod turn;
 
 use heapless::Vec;
 
@@ -71,10 +80,11 @@ use crate::radio::{
 };
 use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
 use crate::tile::TileIndex;
-use crate::volume::{Layer, MAX_REACH, Volume, Voxel, VoxelPatch};
+use crate::volume::{Field, Heading, Layer, MAX_REACH, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
 use far::Far;
 use news::News;
+use turn::Turn;
 
 /// Steps of a way that are remembered.
 const WAY: usize = 64;
@@ -104,6 +114,8 @@ pub const MAX_RANGE: u8 = MAX_REACH;
 pub struct Config {
     /// Sensor range in voxels, 2 to [`MAX_RANGE`]; others are brought into these bounds.
     pub range: u8,
+    /// What of that the sensors show.
+    pub field: Field,
     /// How the robots use the radio. Its origin is that of the lowest level.
     pub link: LinkConfig,
 }
@@ -114,9 +126,11 @@ pub struct Config {
 #[derive(Clone, Debug)]
 pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     range: u8,
+    field: Field,
     volume: Volume<TW, TH, L>,
     done: Layer<TW, TH, L>,
     position: Voxel,
+    turn_to: Turn,
     /// The way to the goal, the next step last.
     way: Vec<Voxel, WAY>,
     goal: Voxel,
@@ -163,9 +177,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub const fn vacant() -> Self {
         Self {
             range: 0,
+            field: Field::ALL_ROUND,
             volume: Volume::vacant(),
             done: Layer::EMPTY,
             position: Voxel::new(0, 0, 0),
+            turn_to: Turn::NONE,
             way: Vec::new(),
             goal: Voxel::new(0, 0, 0),
             far: Far::vacant(),
@@ -228,7 +244,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         } = config.link;
         let grid = GridId::of_box(extent, levels, origin_mm, cell_mm);
         self.range = config.range.clamp(2, MAX_RANGE);
+        self.field = config.field;
         self.position = Voxel::new(0, 0, 0);
+        self.turn_to = Turn::NONE;
         self.goal = Voxel::new(0, 0, 0);
         self.peers = Roster::new();
         self.sender = Sender::new(config.link, grid, id);
@@ -276,8 +294,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.waiting.get()
     }
 
-    /// Begins a step: where the robot is, and every voxel in sight within the range,
-    /// each with whether it is occupied. A voxel is in sight if
+    /// Begins a step: where the robot is, and every voxel in sight within the range and the
+    /// field of a sensor that is turned to [`heading`](Self::heading), each with whether it is
+    /// occupied. A voxel is in sight if
     /// [`in_sight`](crate::volume::in_sight) over free voxels: at least the robot's own,
     /// so a look that shows nothing is one of a sensor that failed.
     ///
@@ -288,6 +307,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// Cost: the voxels seen; and at most a ray for each voxel within range.
     pub fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
+        self.observe_towards(at, self.heading(), seen);
+    }
+
+    /// The same where the sensor is turned elsewhere, as long as it has not come round. One
+    /// that is turned elsewhere in 16 looks in a row from one place shows nothing there.
+    pub fn observe_towards(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]) {
         let sent_to = self.sent_to.take();
         self.looked = true;
         self.lost = !self.volume.contains(at);
@@ -301,7 +326,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.refused = to;
             self.way.clear();
         }
-        self.position = at;
+        self.arrive(at);
         self.closed.clear(at);
         if seen.is_empty() {
             self.silent = self.silent.saturating_add(1);
@@ -320,8 +345,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 self.news.add(tile, z);
             }
         }
-        self.finish(at);
-        self.note_missed();
+        let heading = self.look_towards(heading);
+        self.note_missed(heading);
     }
 
     /// Goes on after a stop with the map at hand: what was given up is tried again.
@@ -329,6 +354,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub fn resume(&mut self) {
         self.stopped = false;
         self.silent = 0;
+        self.turn_to = Turn::NONE;
         self.done.reset();
         self.missed.reset();
         self.has_missed = false;
@@ -452,6 +478,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             Action::Move(to) => Some(to),
             Action::Wait | Action::Stop(_) => None,
         };
+        if !matches!(action, Action::Stop(_)) {
+            self.turn(self.sent_to.unwrap_or(self.position));
+        }
         action
     }
 
@@ -500,6 +529,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.last_known = known;
         if let Some(action) = self.follow() {
             self.look_ahead();
+            return action;
+        }
+        if let Some(action) = self.look_round() {
             return action;
         }
         let action = if self.far.is_idle() && self.fruitless <= PATIENCE {

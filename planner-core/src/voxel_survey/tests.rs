@@ -7,12 +7,15 @@ use super::*;
 use crate::volume::Content;
 use crate::volume::in_sight;
 
+mod fields;
+
 const EXTENT: Extent = Extent::new(11, 10);
 const LEVELS: u8 = 7;
 const RANGE: u8 = 4;
 
 const CONFIG: Config = Config {
     range: RANGE,
+    field: Field::ALL_ROUND,
     link: LinkConfig::new(),
 };
 
@@ -37,8 +40,8 @@ fn look(walls: &BTreeSet<Voxel>, eye: Voxel) -> Vec<(Voxel, bool)> {
         .collect()
 }
 
-/// Every voxel that is seen from any place that can be reached, by brute force.
-fn visible(walls: &BTreeSet<Voxel>, start: Voxel) -> BTreeSet<Voxel> {
+/// The places that can be reached, by brute force.
+fn reached(walls: &BTreeSet<Voxel>, start: Voxel) -> Vec<Voxel> {
     let is_pose = |voxel: Voxel| {
         is_inside(voxel)
             && !walls.contains(&voxel)
@@ -55,17 +58,22 @@ fn visible(walls: &BTreeSet<Voxel>, start: Voxel) -> BTreeSet<Voxel> {
         }
     }
     reached
-        .iter()
-        .flat_map(|&eye| look(walls, eye))
-        .map(|(voxel, _)| voxel)
-        .collect()
+}
+
+/// Every voxel that is seen from any of them.
+fn visible(walls: &BTreeSet<Voxel>, start: Voxel) -> BTreeSet<Voxel> {
+    let views = reached(walls, start);
+    let views = views.iter().flat_map(|&eye| look(walls, eye));
+    views.map(|(voxel, _)| voxel).collect()
 }
 
 const START: Voxel = Voxel::new(5, 5, 4);
 
-/// The slice, and the view that was begun within it: five times two tiles by two of seven
-/// levels, 81 rows eight times, and a ray for each of 257 voxels within the range.
-const MOST_WORK: u32 = SLICE + 32 + 5 * 28 + 8 * 81 + 3 * 257;
+/// The slice, and the view that was begun within it.
+const MOST_WORK: u32 = SLICE + 32 + VIEW;
+/// Five times two tiles by two of seven levels, 81 rows eight times, and a ray for each of 257
+/// voxels within the range.
+const VIEW: u32 = 5 * 28 + 8 * 81 + 3 * 257;
 
 type Scattered = BTreeSet<(i16, i16, i16)>;
 type Slabs = Vec<((i16, i16, i16), (i16, i16, i16))>;

@@ -2,12 +2,13 @@
 //!
 //! They are as [`record`](crate::record) says; the header holds the scenario, the scene as
 //! rows of `#` occupied, `.` free and `?` unknown, level by level from below, where the robots started,
-//! whether every one had stopped and why each had; the columns are the fields of a
+//! where their sensors were turned step by step (a digit each, in eighths of a turn from east
+//! over south), whether every one had stopped and why each had; the columns are the fields of a
 //! [`Record`].
 
 use std::io::{self, BufRead};
 
-use planner_core::volume::{Content, Voxel};
+use planner_core::volume::{Content, Heading, Voxel};
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +16,7 @@ use super::VoxelTrace;
 use crate::record::{self, Deed, Format, Kind, Nothing, Objection, Order, TraceError, wrong};
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
-use crate::scene::{Frame, Free, LARGEST, LEVELS, Marks, Scene, look, visible};
+use crate::scene::{Frame, Free, LARGEST, LEVELS, Marks, Scene, look_towards, visible};
 
 /// Most steps without a record, all together.
 const MOST_EMPTY_STEPS: u32 = 10_000;
@@ -24,6 +25,9 @@ const MOST_EMPTY_STEPS: u32 = 10_000;
 struct Header {
     scenario: Scenario,
     starts: Vec<[i16; 3]>,
+    /// Of each robot, unless they show all round.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    headings: Vec<String>,
     all_stopped: bool,
     /// Of each robot at the end.
     stops: Vec<Option<Stop<Voxel>>>,
@@ -85,6 +89,7 @@ impl VoxelTrace {
         let header = Header {
             scenario: self.scenario.clone(),
             starts: starts.map(|Voxel { x, y, z }| [x, y, z]).collect(),
+            headings: self.headings.iter().map(|it| digits(it)).collect(),
             all_stopped: self.all_stopped,
             stops: self.stops.clone(),
             world: Levels::of(&self.scene),
@@ -111,6 +116,13 @@ impl VoxelTrace {
         };
         of_robots("starts", header.starts.len())?;
         of_robots("ends", header.stops.len())?;
+        let headings = header.headings.iter().map(|text| headings(text));
+        let headings = headings
+            .collect::<Option<Vec<_>>>()
+            .ok_or_else(|| TraceError::Survey("a heading is none of the digits 0 to 7".into()))?;
+        if !scenario.field.is_round() {
+            of_robots("rows of headings", headings.len())?;
+        }
         let starts = header.starts.into_iter();
         let starts: Vec<_> = starts.map(|[x, y, z]| Voxel::new(x, y, z)).collect();
         if starts.iter().any(|&at| scene.content(at).is_none()) {
@@ -136,6 +148,7 @@ impl VoxelTrace {
         })?;
         let mut trace = Self {
             ways: starts.into_iter().map(|start| vec![start]).collect(),
+            headings,
             records,
             found: Vec::new(),
             visible: 0,
@@ -149,6 +162,18 @@ impl VoxelTrace {
         if trace.records.is_empty() {
             return Err(TraceError::Survey("there is no record".into()));
         }
+        let steps = trace
+            .records
+            .last()
+            .map_or(0, |last| last.tick as usize + 1);
+        if trace
+            .headings
+            .iter()
+            .any(|of_robot| of_robot.len() != steps)
+        {
+            let reason = format!("the sensors were not turned in each of {steps} steps");
+            return Err(TraceError::Survey(reason));
+        }
         trace.look_again();
         match trace.visible {
             0 => Err(ScenarioError::NothingToSee.into()),
@@ -159,8 +184,9 @@ impl VoxelTrace {
     /// The ways, what was seen, and what should not have been flown, follow from the
     /// records.
     fn look_again(&mut self) {
-        let (scene, range) = (&self.scene, self.scenario.range);
-        let visible = visible(scene, self.ways[0][0], range);
+        let scene = &self.scene;
+        let Scenario { range, field, .. } = self.scenario;
+        let visible = visible(scene, self.ways[0][0], range, field);
         let mut known = Marks::of(scene);
         let mut looked = Marks::of(scene);
         let mut seen = 0;
@@ -172,9 +198,13 @@ impl VoxelTrace {
             let (records, later) = rest.split_at(of_step);
             rest = later;
             for record in records {
-                let at = at[usize::from(record.robot)];
-                // Who looks from the same place sees the same.
-                let view = looked.insert(scene, at).then(|| look(scene, at, range));
+                let robot = usize::from(record.robot);
+                let at = at[robot];
+                let turns = self.headings.get(robot);
+                let heading = turns.map_or(Heading::EAST, |it| it[tick as usize]);
+                // Who looks from the same place all round sees the same.
+                let is_new = looked.insert(scene, at) || !field.is_round();
+                let view = is_new.then(|| look_towards(scene, at, range, field, heading));
                 for (voxel, occupied) in view.into_iter().flatten() {
                     if scene.is_known(voxel) && known.insert(scene, voxel) {
                         self.found.push((tick, voxel, occupied));
@@ -204,6 +234,16 @@ impl VoxelTrace {
     pub fn digest(&self) -> String {
         record::digest(&self.records)
     }
+}
+
+fn digits(headings: &[Heading]) -> String {
+    let digits = headings.iter();
+    digits.map(|it| char::from(b'0' + it.eighths())).collect()
+}
+
+fn headings(digits: &str) -> Option<Vec<Heading>> {
+    let heading = |digit: char| digit.to_digit(8).map(|eighths| Heading::new(eighths as u8));
+    digits.chars().map(heading).collect()
 }
 
 impl Levels {
@@ -269,6 +309,8 @@ impl Levels {
 
 #[cfg(test)]
 mod tests {
+    use planner_core::volume::Field;
+
     use super::*;
     use crate::run::voxels::{Simulation, run};
 
@@ -278,6 +320,36 @@ mod tests {
         scenario.conditions.loss = 0.3;
         scenario.conditions.max_ticks = max_ticks;
         run(&Scene::town(1, 28), &scenario).unwrap()
+    }
+
+    #[test]
+    fn headings_survive_too() {
+        let mut scenario = Scenario::new(2, 4);
+        scenario.field = Field::CAMERA;
+        scenario.conditions.max_ticks = 80;
+        let trace = run(&Scene::town(1, 24), &scenario).unwrap();
+        let text = file(&trace);
+        let read = VoxelTrace::read(text.as_bytes()).unwrap();
+        assert_eq!(
+            (&read.headings, &read.found),
+            (&trace.headings, &trace.found)
+        );
+        assert_eq!(read.scenario, scenario);
+        for (from, to, reason) in [
+            ("\"headings\":[\"0", "\"headings\":[\"8", "digits 0 to 7"),
+            ("\"headings\":[\"0", "\"headings\":[\"", "each of 81 steps"),
+            (
+                "\"headings\":[\"0",
+                "\"headings\":[\"0\",\"0",
+                "3 rows of headings",
+            ),
+        ] {
+            let damaged = text.replacen(from, to, 1);
+            let error = VoxelTrace::read(damaged.as_bytes())
+                .unwrap_err()
+                .to_string();
+            assert!(error.contains(reason), "{error}");
+        }
     }
 
     fn file(trace: &VoxelTrace) -> String {

@@ -2,7 +2,7 @@
 
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Content, Voxel, VoxelPatch};
+use planner_core::volume::{Content, Heading, Voxel, VoxelPatch};
 use planner_core::{Action, Extent, RobotId, Status};
 
 use super::pilot::Pilot;
@@ -102,8 +102,12 @@ impl Pilot for Follower {
         self.inner.pass();
     }
 
-    fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
-        self.inner.observe(at, seen);
+    fn observe(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]) {
+        self.inner.observe(at, heading, seen);
+    }
+
+    fn heading(&self) -> Heading {
+        self.inner.heading()
     }
 
     fn resume(&mut self) {

@@ -2,7 +2,7 @@
 
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Content, Voxel, VoxelPatch};
+use planner_core::volume::{Content, Heading, Voxel, VoxelPatch};
 use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
@@ -18,7 +18,8 @@ const MOST_ON_STACK: usize = 128 << 10;
 
 /// [`VoxelSurvey`] of any size.
 pub(super) trait Pilot: Send {
-    fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]);
+    fn observe(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]);
+    fn heading(&self) -> Heading;
     fn tick(&mut self) -> Action<Voxel, Voxel>;
     fn work(&self) -> u32;
     fn resume(&mut self);
@@ -40,8 +41,12 @@ pub(super) trait Pilot: Send {
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW, TH, L> {
-    fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
-        self.observe(at, seen);
+    fn observe(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]) {
+        self.observe_towards(at, heading, seen);
+    }
+
+    fn heading(&self) -> Heading {
+        self.heading()
     }
 
     fn tick(&mut self) -> Action<Voxel, Voxel> {

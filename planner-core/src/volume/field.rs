@@ -1,0 +1,250 @@
+//! What a sensor shows of what is in sight: its field of view, and where it is turned.
+
+use super::Voxel;
+
+/// Where a sensor is turned on the plan: one of eight directions, 45 degrees apart.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Heading(u8);
+
+impl Heading {
+    /// Towards greater x.
+    pub const EAST: Self = Self(0);
+
+    /// So many eighths of a turn from east, over south.
+    pub const fn new(eighths: u8) -> Self {
+        Self(eighths % 8)
+    }
+
+    /// Eighths of a turn from east, over south: 0 to 7.
+    pub const fn eighths(self) -> u8 {
+        self.0 % 8
+    }
+
+    /// All eight, from east on.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..8).map(Self)
+    }
+
+    /// This one, turned towards `to` the shorter way round, at most `eighths` of a turn.
+    pub fn turned(self, to: Self, eighths: u8) -> Self {
+        let over_south = (to.eighths() + 8 - self.eighths()) % 8;
+        let over_north = (8 - over_south) % 8;
+        if over_south <= over_north {
+            Self::new(self.eighths() + over_south.min(eighths))
+        } else {
+            Self::new(self.eighths() + 8 - over_north.min(eighths))
+        }
+    }
+
+    /// A step that way: east, south.
+    const fn step(self) -> (i64, i64) {
+        match self.eighths() {
+            0 => (1, 0),
+            1 => (1, 1),
+            2 => (0, 1),
+            3 => (-1, 1),
+            4 => (-1, 0),
+            5 => (-1, -1),
+            6 => (0, -1),
+            _ => (1, -1),
+        }
+    }
+
+    /// One bit of eight.
+    pub(crate) const fn bit(self) -> u8 {
+        1 << self.eighths()
+    }
+}
+
+/// A field of view: of what is within range and in sight, what one look shows.
+///
+/// Angles are told by their tangents, in 256ths, so that whole numbers decide.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Field {
+    /// How far up it shows: the tangent of the highest elevation. [`STEEP`](Self::STEEP):
+    /// up to straight above.
+    pub up: u16,
+    /// The same down.
+    pub down: u16,
+    /// The tangent of half its width on the plan, as an image is flat: elevations are those
+    /// of the image too. `None`: it shows all round, wherever it is turned.
+    pub side: Option<u16>,
+    /// Distance in voxels within which a look shows everything, in whatever direction: what
+    /// range finders all round tell. A robot that feels less than 2 flies only where its
+    /// field itself has shown every voxel beside its way.
+    pub near: u8,
+}
+
+impl Field {
+    /// As an angle's tangent: a right angle.
+    pub const STEEP: u16 = u16::MAX;
+
+    /// Everything.
+    pub const ALL_ROUND: Self = Self {
+        up: Self::STEEP,
+        down: Self::STEEP,
+        side: None,
+        near: 2,
+    };
+
+    /// What is no higher than the robot, as of a sensor of half a sphere under it.
+    pub const DOWNWARD: Self = Self {
+        up: 0,
+        ..Self::ALL_ROUND
+    };
+
+    /// The robot's own level: a lidar that turns in a plane.
+    pub const LIDAR: Self = Self {
+        up: 0,
+        down: 0,
+        ..Self::ALL_ROUND
+    };
+
+    /// A depth camera of 90×60 degrees, turned ahead.
+    pub const CAMERA: Self = Self {
+        up: 148,
+        down: 148,
+        side: Some(256),
+        near: 2,
+    };
+
+    /// Whether a look shows the same wherever the sensor is turned.
+    pub const fn is_round(&self) -> bool {
+        self.side.is_none()
+    }
+
+    /// Whether it shows all that is in sight.
+    pub const fn is_whole(&self) -> bool {
+        self.is_round() && self.up == Self::STEEP && self.down == Self::STEEP
+    }
+
+    /// Whether a sensor at `eye` that is turned to `heading` has `voxel` in its field.
+    pub fn shows(&self, eye: Voxel, heading: Heading, voxel: Voxel) -> bool {
+        let near = u32::from(self.near) * u32::from(self.near);
+        if self.is_whole() || eye.distance_squared(voxel) <= near {
+            return true;
+        }
+        let [x, y, z] = [(eye.x, voxel.x), (eye.y, voxel.y), (eye.z, voxel.z)]
+            .map(|(from, to)| i64::from(to) - i64::from(from));
+        // How deep in the image it lies, squared, and the square of the unit of that.
+        let (depth, unit) = match self.side {
+            None => (x * x + y * y, 1),
+            Some(side) => {
+                let (east, south) = heading.step();
+                let ahead = x * east + y * south;
+                let aside = (x * south - y * east).abs();
+                if ahead < 0 || 256 * aside > ahead * i64::from(side) {
+                    return false;
+                }
+                (ahead * ahead, east * east + south * south)
+            }
+        };
+        let slope = if z > 0 { self.up } else { self.down };
+        let [high, deep] = [(z, 256), (1, i64::from(slope))].map(|(a, b)| a * a * b * b);
+        slope == Self::STEEP || high.saturating_mul(unit) <= deep.saturating_mul(depth)
+    }
+
+    /// The headings from which a sensor at `eye` has `voxel` in its field, a
+    /// [`bit`](Heading::bit) each; east alone stands for all if it shows all round.
+    pub(crate) fn headings(&self, eye: Voxel, voxel: Voxel) -> u8 {
+        if self.is_round() {
+            return self.shows(eye, Heading::EAST, voxel).into();
+        }
+        let shown = Heading::all().filter(|&heading| self.shows(eye, heading, voxel));
+        shown.fold(0, |bits, heading| bits | heading.bit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const EYE: Voxel = Voxel::new(3, -2, 7);
+
+    fn at(x: i16, y: i16, z: i16) -> Voxel {
+        Voxel::new(EYE.x + x, EYE.y + y, EYE.z + z)
+    }
+
+    proptest! {
+        /// Against angles in degrees.
+        #[test]
+        fn a_camera_shows_what_its_image_has(x in -12i16..=12, y in -12i16..=12, z in -12i16..=12) {
+            for heading in Heading::all() {
+                let yaw = f64::from(heading.eighths()) * 45f64.to_radians();
+                let (sin, cos) = yaw.sin_cos();
+                let (fx, fy, fz) = (f64::from(x), f64::from(y), f64::from(z));
+                let (ahead, aside) = (fx * cos + fy * sin, fy * cos - fx * sin);
+                let tall = 148.0 / 256.0;
+                // On the rim either is right, as far as this knows.
+                let rim = |it: f64| it.abs() < 1e-9;
+                prop_assume!(!rim(ahead - aside.abs()) && !rim(fz.abs() - tall * ahead));
+                let is_in_image = ahead > 0.0 && aside.abs() < ahead && fz.abs() < tall * ahead;
+                let is_near = x * x + y * y + z * z <= 4;
+                prop_assert_eq!(
+                    Field::CAMERA.shows(EYE, heading, at(x, y, z)),
+                    is_in_image || is_near,
+                    "{:?}", heading
+                );
+            }
+        }
+
+        #[test]
+        fn what_shows_all_round_is_told_by_the_elevation(
+            x in -12i16..=12, y in -12i16..=12, z in -12i16..=12, eighths in 0u8..8,
+        ) {
+            let heading = Heading::new(eighths);
+            let shows = |field: Field| field.shows(EYE, heading, at(x, y, z));
+            let is_near = x * x + y * y + z * z <= 4;
+            prop_assert!(shows(Field::ALL_ROUND));
+            prop_assert_eq!(shows(Field::DOWNWARD), z <= 0 || is_near);
+            prop_assert_eq!(shows(Field::LIDAR), z == 0 || is_near);
+            for field in [Field::ALL_ROUND, Field::DOWNWARD, Field::LIDAR] {
+                prop_assert_eq!(field.headings(EYE, at(x, y, z)) != 0, shows(field));
+            }
+        }
+
+        /// A turn ends where it leads, by the shorter way.
+        #[test]
+        fn turns_are_short(from in 0u8..8, to in 0u8..8, most in 0u8..8) {
+            let turned = Heading::new(from).turned(Heading::new(to), most);
+            let apart = |a: u8, b: u8| ((a + 8 - b) % 8).min((b + 8 - a) % 8);
+            let left = apart(to, from) - apart(to, from).min(most);
+            prop_assert_eq!(apart(to, turned.eighths()), left);
+        }
+    }
+
+    /// Every direction of the plan is within some heading's field.
+    #[test]
+    fn headings_go_round() {
+        for (x, y) in (-12..=12).flat_map(|x| (-12..=12).map(move |y| (x, y))) {
+            assert_ne!(Field::CAMERA.headings(EYE, at(x, y, 0)), 0, "{x},{y}");
+        }
+        let narrow = Field {
+            side: Some(107),
+            ..Field::CAMERA
+        };
+        assert_ne!(narrow.headings(EYE, at(9, -4, 1)), 0);
+    }
+
+    /// The largest numbers are no others than small ones.
+    #[test]
+    fn far_voxels_overflow_nothing() {
+        let (low, high) = (
+            Voxel::new(i16::MIN, i16::MIN, i16::MIN),
+            Voxel::new(i16::MAX, i16::MAX, i16::MAX),
+        );
+        let wide = Field {
+            up: u16::MAX - 1,
+            side: Some(u16::MAX),
+            ..Field::CAMERA
+        };
+        assert!(wide.shows(low, Heading::new(1), high));
+        assert!(!wide.shows(low, Heading::new(5), high));
+        assert!(!Field::CAMERA.shows(low, Heading::new(1), high));
+    }
+}

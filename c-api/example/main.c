@@ -9,7 +9,7 @@
 
 // All memory that the planner ever takes. Sizes are known when this is compiled.
 static Planner robot;
-_Static_assert(sizeof(Planner) <= 29044, "the Crazyflie's default build leaves 29,044 bytes");
+_Static_assert(sizeof(Planner) <= 29044, "the limit of fixtures/budget.txt for an image of 128x128 cells");
 _Static_assert(PLANNER_MAX_FRAME <= 60, "a packet of the Crazyflie's peer-to-peer radio");
 
 static const char *const WORLD[] = {

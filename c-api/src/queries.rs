@@ -215,27 +215,27 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
     texts.get(code).unwrap_or(&c"unknown").as_ptr()
 }
 
-/// By [`PlannerResult`].
+/// By [`PlannerResult`]. What Rust's `Display` says too begins with the same words.
 pub(crate) const RESULTS: [&CStr; 29] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
     c"no planner was created in this memory",
     c"the grid is empty, too large, or the start lies off it",
-    c"the pose, the range or the tolerance of the scan cannot be",
+    c"the scan's pose or largest range cannot be, or its tolerance is not between 0 and 0.25 cells",
     c"too many values",
     c"no such motion",
-    c"a frame was not taken",
+    c"unknown",
     c"cells of 0 mm",
     c"the place lies off the grid",
-    c"frame: no such length",
-    c"frame: another version",
-    c"frame: another kind",
-    c"frame: damaged, or another key",
-    c"frame: another grid",
-    c"frame: the robot's own",
-    c"frame: a field holds what it cannot",
-    c"frame: another robot has this id",
+    c"no frame is of this length",
+    c"the frame is of another version",
+    c"this planner does not read frames of this kind",
+    c"the frame's check bytes do not match",
+    c"the frame is about another grid",
+    c"the frame is the robot's own",
+    c"the frame's fields are out of range",
+    c"another robot has the id of this one",
     c"no such sensor",
     c"header and library are of different sizes",
     c"no such clearance",
@@ -248,27 +248,27 @@ pub(crate) const RESULTS: [&CStr; 29] = [
     c"the grid was moved too often since the last stop",
 ];
 
-/// By [`PlannerStop`](crate::PlannerStop).
+/// By [`PlannerStop`](crate::PlannerStop), in the same words.
 pub(crate) const STOPS: [&CStr; 13] = [
     c"exploring",
     c"complete",
-    c"complete: what is left is enclosed",
+    c"complete; no way leads to what is left, and part of the map was heard",
     c"gave up: the way stayed blocked",
-    c"gave up: back at the start",
-    c"gave up: no trace to follow",
-    c"complete within the map, which ends too early",
-    c"complete: what is left is out of reach",
-    c"gave up: a cell that no look shows",
+    c"back at the start with no frontier in view",
+    c"no frontier in view and no trace to follow",
+    c"complete within the map, which ends at free cells",
+    c"complete; no way leads to what is left in sight",
+    c"gave up: no look shows what is at a cell",
     c"gave up: a robot stayed in the way",
     c"home",
-    c"where it was sent",
+    c"arrived",
     c"gave up: no known way leads there",
 ];
 
 /// By [`PlannerWait`](crate::PlannerWait).
 pub(crate) const WAITS: [&CStr; 9] = [
     c"does not wait",
-    c"waits for a look",
+    c"has seen nothing yet",
     c"waits for a place on the grid",
     c"searches the map",
     c"waits for a cell that refused a step",

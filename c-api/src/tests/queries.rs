@@ -1,5 +1,9 @@
 //! What is asked of a planner, and the words of its codes.
 
+use std::ffi::{CStr, c_char};
+
+use planner_core::radio::GridId;
+
 use super::*;
 
 #[test]
@@ -159,11 +163,14 @@ fn metres_are_those_of_the_core() {
     assert_eq!(made, PlannerResult::CellSize);
 }
 
+/// What a function of words returns.
+fn read(text: *const c_char) -> &'static str {
+    // SAFETY: all texts are constants that end with a zero byte.
+    unsafe { CStr::from_ptr(text) }.to_str().unwrap()
+}
+
 #[test]
 fn codes_have_words() {
-    use std::ffi::CStr;
-    // SAFETY: all texts are constants that end with a zero byte.
-    let read = |text| unsafe { CStr::from_ptr(text) }.to_str().unwrap();
     assert_eq!(
         read(planner_result_text(PlannerResult::Memory as u8)),
         "header and library are of different sizes"
@@ -214,5 +221,45 @@ fn codes_have_words() {
                 "{words}"
             );
         }
+    }
+}
+
+#[test]
+fn words_begin_as_those_of_rust() {
+    let alike = |ours: &str, theirs: &str| {
+        let shared = ours.bytes().zip(theirs.bytes());
+        let shared = shared.take_while(|(a, b)| a == b).count();
+        assert!(shared >= ours.len().min(12), "{ours}; {theirs}");
+    };
+    let at = Cell::new(3, 4);
+    for stop in [
+        Stop::Complete,
+        Stop::Enclosed { frontiers: 1 },
+        Stop::Blocked { frontiers: 1, at },
+        Stop::BackAtStart { frontiers: 1 },
+        Stop::NoTrace { frontiers: 1 },
+        Stop::AtEdge { cells: 1 },
+        Stop::OutOfReach { frontiers: 1 },
+        Stop::Unseen { frontiers: 1, at },
+        Stop::Held { frontiers: 1, at },
+        Stop::Home { frontiers: 1 },
+        Stop::Arrived { frontiers: 1, at },
+        Stop::NoWay { frontiers: 1, at },
+    ] {
+        let code = PlannerStop::from(stop.reason()) as u8;
+        alike(read(planner_stop_text(code)), &stop.to_string());
+    }
+    for error in [
+        FrameError::Length(3),
+        FrameError::Version(9),
+        FrameError::Kind(9),
+        FrameError::Check,
+        FrameError::OtherGrid(GridId(1)),
+        FrameError::Own,
+        FrameError::SameId(RobotId(1)),
+        FrameError::Field(Field::Goal),
+    ] {
+        let code = PlannerResult::from(error) as u8;
+        alike(read(planner_result_text(code)), &error.to_string());
     }
 }

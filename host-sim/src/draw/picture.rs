@@ -11,6 +11,7 @@ use super::paint::{Ground, INK, ROBOT_COLORS, robot_color};
 use super::replay::Replay;
 use super::{DrawError, write_png};
 use crate::record::grid::Trace;
+use crate::scenario::MediumKind;
 use crate::world::cells;
 
 /// Sides of the drawn map in pixels, about.
@@ -211,13 +212,18 @@ fn draw_end(
 /// The scenario in a line.
 pub(super) fn title(trace: &Trace) -> String {
     let scenario = &trace.scenario;
+    let news = match scenario.conditions.medium {
+        MediumKind::Ideal => "maps shared",
+        MediumKind::Radio => "frames sent",
+    };
+    let lost = match 100.0 * scenario.conditions.loss {
+        0.0 => String::new(),
+        loss => format!(", {loss:.0} % lost"),
+    };
     let radio = match scenario.conditions.sync {
         0 => "no radio".into(),
-        1 if scenario.conditions.loss == 0.0 => "maps shared every tick".into(),
-        sync => {
-            let loss = 100.0 * scenario.conditions.loss;
-            format!("maps shared every {sync} ticks, {loss:.0} % lost")
-        }
+        1 => format!("{news} every tick{lost}"),
+        sync => format!("{news} every {sync} ticks{lost}"),
     };
     let trouble = match scenario.conditions.trouble {
         trouble if trouble.is_none() => String::new(),

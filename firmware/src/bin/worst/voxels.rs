@@ -140,16 +140,11 @@ impl Place {
                 }
             }
             Self::Open => {
-                let is_inside = |x: i16, y: i16| (x % 10, y % 10) == (5, 5);
-                if is_inside(x, y) && z == 8 {
-                    Kind::Unknown
-                } else if z == 8 && (is_inside(x + 1, y) || is_inside(x - 1, y))
-                    || z == 8 && (is_inside(x, y + 1) || is_inside(x, y - 1))
-                    || (z == 7 || z == 9) && is_inside(x, y)
-                {
-                    Kind::Occupied
-                } else {
-                    Kind::Free
+                let beside = |at: i16, middle: i16| (at % 10 - middle).unsigned_abs();
+                match beside(x, 5) + beside(y, 5) + beside(z, 8) {
+                    0 => Kind::Unknown,
+                    1 => Kind::Occupied,
+                    _ => Kind::Free,
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Poses in a plane: metres, radians to the left.
 
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::f64::consts::{PI, TAU};
 
 use ros_messages::geometry::{Pose as RosPose, Transform};
@@ -141,6 +141,13 @@ impl Frames {
                 (parent, Pose::from(&it.transform)),
             );
         }
+    }
+
+    /// Names of all frames, each once.
+    pub(crate) fn names(&self) -> String {
+        let parents = self.0.values().map(|(parent, _)| parent);
+        let names: BTreeSet<_> = self.0.keys().chain(parents).map(String::as_str).collect();
+        names.into_iter().collect::<Vec<_>>().join(", ")
     }
 
     /// The pose of a frame in another one above, below or beside it.

@@ -24,7 +24,7 @@ use serde::de::DeserializeOwned;
 
 use crate::arguments::Arguments;
 use crate::drive::Velocity;
-use crate::geometry::{Frames, Pose};
+use crate::geometry::Frames;
 use crate::nav2::{Nav2, Outcome};
 use crate::parameters::{Drive, Mapped, Parameters, PoseSource};
 use crate::robot::{Order, Robot};
@@ -179,12 +179,6 @@ impl<'a> Ports<'a> {
     }
 }
 
-/// Where poses come from.
-enum Poses {
-    Odometry(Box<In<Odometry>>),
-    Transforms(Vec<In<TFMessage>>),
-}
-
 enum Wheels {
     Twist(Out<Twist>),
     Stamped(Out<TwistStamped>),
@@ -195,7 +189,9 @@ struct Explore<'a> {
     ports: Ports<'a>,
     robot: Robot,
     frames: Frames,
-    poses: Poses,
+    /// Poses, where transforms do not give them.
+    odometry: Option<In<Odometry>>,
+    transforms: [In<TFMessage>; 2],
     scans: Option<In<LaserScan>>,
     costmaps: Option<In<OccupancyGrid>>,
     wheels: Wheels,
@@ -258,15 +254,15 @@ impl<'a> Explore<'a> {
         };
         let mut ports = Ports::open(arguments, &parameters.mcap)?;
         let p = &parameters;
-        let poses = match p.pose_source {
-            PoseSource::Odom => {
-                Poses::Odometry(Box::new(ports.subscribe(&p.odom_topic, best_effort(50))?))
-            }
-            PoseSource::Tf => Poses::Transforms(vec![
-                ports.subscribe(&p.tf_topic, best_effort(100))?,
-                ports.subscribe(&p.tf_static_topic, latched(100))?,
-            ]),
+        let odometry = match p.pose_source {
+            PoseSource::Odom => Some(ports.subscribe(&p.odom_topic, best_effort(50))?),
+            PoseSource::Tf => None,
         };
+        // They say, too, where the scanner is on the robot.
+        let transforms = [
+            ports.subscribe(&p.tf_topic, best_effort(100))?,
+            ports.subscribe(&p.tf_static_topic, latched(100))?,
+        ];
         let scans = match p.needs_scans() {
             true => Some(ports.subscribe(&p.scan_topic, best_effort(5))?),
             false => None,
@@ -287,8 +283,20 @@ impl<'a> Explore<'a> {
                 Wheels::Nav2(Box::new(Nav2::new(&mut ports.node, &action, mapping)?))
             }
         };
+        // In what it says, topics have their whole names.
+        let named = Parameters {
+            odom_topic: ports.arguments.topic(&p.odom_topic),
+            scan_topic: ports.arguments.topic(&p.scan_topic),
+            tf_topic: ports.arguments.topic(&p.tf_topic),
+            costmap_topic: match p.costmap_topic.as_str() {
+                "" => String::new(),
+                topic => ports.arguments.topic(topic),
+            },
+            ..parameters.clone()
+        };
         let explore = Self {
-            poses,
+            odometry,
+            transforms,
             scans,
             costmaps,
             wheels,
@@ -304,7 +312,7 @@ impl<'a> Explore<'a> {
             activity: String::new(),
             still: 0,
             begin: Instant::now(),
-            robot: Robot::new(parameters, id),
+            robot: Robot::new(named, id),
             ports,
         };
         explore.ports.say(&format!("robot {} is ready", id.0));
@@ -331,37 +339,33 @@ impl<'a> Explore<'a> {
     /// Takes in all that came.
     fn hear(&mut self) -> Result<(), NodeError> {
         let (now, time) = (self.now(), self.time());
-        match &self.poses {
-            Poses::Odometry(odometry) => {
-                while let Some(message) = self.ports.take(odometry, time)? {
-                    let pose = Pose::from(&message.pose.pose);
-                    if pose.is_finite() {
-                        let time = message.header.stamp.nanoseconds();
-                        self.robot.track.add(time, pose);
-                    }
-                }
+        if let Some(odometry) = &self.odometry {
+            while let Some(message) = self.ports.take(odometry, time)? {
+                self.robot.odometry(&message);
             }
-            Poses::Transforms(topics) => {
-                for topic in topics {
-                    while let Some(message) = self.ports.take(topic, time)? {
-                        self.frames.add(&message);
-                        let times = message.transforms.iter();
-                        let newest = times.map(|it| it.header.stamp.nanoseconds()).max();
-                        let p = &self.robot.parameters;
-                        let pose = self.frames.find(&p.robot_base_frame, &p.global_frame);
-                        if let (Some(time), Some(pose)) = (newest, pose.filter(|it| it.is_finite()))
-                        {
-                            self.robot.track.add(time, pose);
-                        }
-                    }
+        }
+        for topic in &self.transforms {
+            while let Some(message) = self.ports.take(topic, time)? {
+                self.frames.add(&message);
+                let p = &self.robot.parameters;
+                if p.pose_source == PoseSource::Odom {
+                    continue;
+                }
+                let times = message.transforms.iter();
+                let newest = times.map(|it| it.header.stamp.nanoseconds()).max();
+                let pose = self.frames.find(&p.robot_base_frame, &p.global_frame);
+                if let (Some(time), Some(pose)) = (newest, pose.filter(|it| it.is_finite())) {
+                    self.robot.track.add(time, pose);
                 }
             }
         }
         if let Some(scans) = &self.scans {
             while let Some(scan) = self.ports.take(scans, time)? {
-                let (scanner, base) = (&scan.header.frame_id, &self.robot.parameters);
-                let offset = self.frames.find(scanner, &base.robot_base_frame);
-                self.robot.scan(scan, offset.unwrap_or_default(), now);
+                let base = &self.robot.parameters.robot_base_frame;
+                match self.frames.find(&scan.header.frame_id, base) {
+                    Some(offset) => self.robot.scan(scan, offset, now),
+                    None => self.robot.lose_scanner(scan.header.frame_id),
+                }
             }
         }
         if let Some(costmaps) = &self.costmaps {
@@ -393,7 +397,7 @@ impl<'a> Explore<'a> {
         if let Some(complaint) = self.robot.take_complaint() {
             self.ports.say(&complaint);
         }
-        let activity = self.robot.activity(now);
+        let activity = self.robot.activity(now, &self.frames);
         if activity != self.activity {
             self.ports.say(&activity);
             let data = activity.clone();

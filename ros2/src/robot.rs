@@ -6,11 +6,11 @@ use std::collections::VecDeque;
 use planner_core::explorer::Explorer;
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::{Action, Cell, Errands, Map, Motion, Planner, RobotId, Sighting, Stop, Wait};
-use ros_messages::nav::OccupancyGrid;
+use ros_messages::nav::{OccupancyGrid, Odometry};
 use ros_messages::sensor::LaserScan;
 
 use crate::drive::{Progress, Velocity, steer, turn_by};
-use crate::geometry::{Pose, Track, turn};
+use crate::geometry::{Frames, Pose, Track, turn};
 use crate::parameters::{Parameters, PoseSource, TILES};
 use crate::sight::{Bearings, on_grid, read_map, room_ahead};
 use crate::views;
@@ -55,6 +55,12 @@ pub(crate) struct Robot {
     last: Action,
     complaint: Option<String>,
     refused: Option<FrameError>,
+    /// The frame of a scanner that no transform places on the robot.
+    unplaced: Option<String>,
+    /// Whether it was said that odometry is in another frame, and that the robot is off the
+    /// map.
+    has_said_frame: bool,
+    has_said_place: bool,
 }
 
 impl Robot {
@@ -77,11 +83,39 @@ impl Robot {
             last: Action::Wait,
             complaint: None,
             refused: None,
+            unplaced: None,
+            has_said_frame: false,
+            has_said_place: false,
         }
+    }
+
+    /// A pose out of odometry.
+    pub(crate) fn odometry(&mut self, message: &Odometry) {
+        let pose = Pose::from(&message.pose.pose);
+        if !pose.is_finite() {
+            return;
+        }
+        self.track.add(message.header.stamp.nanoseconds(), pose);
+        let (frame, global) = (&message.header.frame_id, &self.parameters.global_frame);
+        if frame != global && !self.has_said_frame {
+            let what = format!(
+                "odometry is in the frame {frame}, and is taken as if it were in {global}: set \
+                 global_frame to {frame}, or pose_source to tf"
+            );
+            self.has_said_frame = true;
+            self.complain(what);
+        }
+    }
+
+    /// A scan came from a frame that no transform places on the robot: nothing is known of
+    /// what it shows.
+    pub(crate) fn lose_scanner(&mut self, frame: String) {
+        self.unplaced = Some(frame);
     }
 
     /// A scan, from a scanner at `offset` on the robot, that came at `now` seconds.
     pub(crate) fn scan(&mut self, scan: LaserScan, offset: Pose, now: f64) {
+        self.unplaced = None;
         self.room = room_ahead(&scan, offset, self.parameters.robot_radius);
         self.scanned_at = Some(now);
         if !self.parameters.costmap_topic.is_empty() {
@@ -157,7 +191,9 @@ impl Robot {
         }
         let (far, timeout) = (self.parameters.resolution / 2.0, self.timeout());
         if self.progress.is_stuck(pose, now, far, timeout) {
-            self.complain(format!("no progress for {timeout} s: the way is blocked"));
+            self.complain(format!(
+                "no progress for {timeout} s: the way is blocked, or nothing follows the orders"
+            ));
             self.refuse();
         }
     }
@@ -190,16 +226,13 @@ impl Robot {
     }
 
     /// What it does, in words.
-    pub(crate) fn activity(&self, now: f64) -> String {
+    pub(crate) fn activity(&self, now: f64, frames: &Frames) -> String {
         if self.track.newest().is_some() && !self.has_started {
             return "waiting: the pose lies off the map".to_owned();
         }
         if !self.has_started {
             return match self.parameters.pose_source {
-                PoseSource::Tf => format!(
-                    "waiting: no transform from {} to {} yet",
-                    self.parameters.global_frame, self.parameters.robot_base_frame
-                ),
+                PoseSource::Tf => self.no_transform(&self.parameters.global_frame, frames),
                 PoseSource::Odom => {
                     format!("waiting: no odometry on {} yet", self.parameters.odom_topic)
                 }
@@ -218,16 +251,26 @@ impl Robot {
             _ if self.lacks_map() => {
                 format!("waiting for a map on {}", self.parameters.costmap_topic)
             }
-            _ if self.is_blind(now) => {
-                format!(
-                    "waiting for {}: no scan came lately",
-                    self.parameters.scan_topic
-                )
-            }
+            _ if self.is_blind(now) => match &self.unplaced {
+                Some(frame) => self.no_transform(frame, frames),
+                None => {
+                    let topic = &self.parameters.scan_topic;
+                    format!("waiting for {topic}: no scan came lately")
+                }
+            },
             Some(Wait::Pose) => "waiting: the pose lies off the map".to_owned(),
             Some(Wait::Obstructed) => "waiting: something is in the way".to_owned(),
             _ => "exploring".to_owned(),
         }
+    }
+
+    fn no_transform(&self, from: &str, frames: &Frames) -> String {
+        let (base, topic) = (&self.parameters.robot_base_frame, &self.parameters.tf_topic);
+        let heard = match frames.names() {
+            names if names.is_empty() => format!("nothing came on {topic}"),
+            names => format!("frames on {topic}: {names}"),
+        };
+        format!("waiting: no transform from {from} to {base} yet; {heard}")
     }
 
     /// Whether it has come to an end.
@@ -278,11 +321,15 @@ impl Robot {
         let (config, extent) = (self.parameters.config(), self.parameters.extent());
         match self.explorer.reset(config, self.id, extent, cell) {
             Ok(()) => self.has_started = true,
-            Err(error) => self.complain(format!(
-                "the robot is at ({:.2}, {:.2}), and {error}: set origin_x, origin_y, width, \
-                 height and resolution so that the map holds it",
-                pose.x, pose.y
-            )),
+            Err(_) if self.has_said_place => {}
+            Err(error) => {
+                self.has_said_place = true;
+                self.complain(format!(
+                    "the robot is at ({:.2}, {:.2}), and {error}: set origin_x, origin_y, width, \
+                     height and resolution so that the map holds it",
+                    pose.x, pose.y
+                ));
+            }
         }
         self.has_started
     }

@@ -136,11 +136,24 @@ RECORDED = {
 class Odometry:
     """Poses as odometry, orders as twists."""
 
-    parameters = {"pose_source": "odom", "drive": "twist"}
+    parameters = {"pose_source": "odom", "tf_static_topic": "tf_static", "drive": "twist"}
 
     def __init__(self, robot):
         self.odom = robot.writer("odom", m.Odometry, RELIABLE)
         self.cmd_vel = robot.reader("cmd_vel", m.Twist, RELIABLE)
+        self.mount(robot, "base_link", 0.0)
+
+    def mount(self, robot, base, yaw):
+        """Says where the scanner is on the robot."""
+        self.static = robot.writer("tf_static", m.TFMessage, LATCHED)
+        scanner = self.transform(base, "laser", (0.0, 0.0, yaw), m.Time())
+        self.static.write(m.TFMessage([scanner]))
+
+    @staticmethod
+    def transform(parent, child, pose, stamp):
+        x, y, yaw = pose
+        place = m.Transform(m.Vector3(x, y, 0.0), turned(yaw))
+        return m.TransformStamped(m.Header(stamp, parent), child, place)
 
     def tell(self, x, y, yaw, stamp):
         pose = m.PoseWithCovariance(m.Pose(m.Point(x, y, 0.0), turned(yaw)))
@@ -156,7 +169,7 @@ class Odometry:
 class Nav2(Odometry):
     """Poses as odometry, goals to Nav2."""
 
-    parameters = {"pose_source": "odom", "drive": "nav2", "service_mapping": "cyclone"}
+    parameters = Odometry.parameters | {"drive": "nav2", "service_mapping": "cyclone"}
 
     def __init__(self, robot):
         super().__init__(robot)
@@ -232,16 +245,8 @@ class Transforms(Odometry):
 
     def __init__(self, robot):
         self.tf = robot.writer("tf", m.TFMessage, RELIABLE)
-        self.static = robot.writer("tf_static", m.TFMessage, LATCHED)
         self.cmd_vel = robot.reader("cmd_vel", m.TwistStamped, RELIABLE)
-        scanner = self.transform("base_footprint", "laser", (0.0, 0.0, LEFT), m.Time())
-        self.static.write(m.TFMessage([scanner]))
-
-    @staticmethod
-    def transform(parent, child, pose, stamp):
-        x, y, yaw = pose
-        place = m.Transform(m.Vector3(x, y, 0.0), turned(yaw))
-        return m.TransformStamped(m.Header(stamp, parent), child, place)
+        self.mount(robot, "base_footprint", LEFT)
 
     def tell(self, x, y, yaw, stamp):
         # What a map's maker corrects, and what the wheels say.

@@ -113,7 +113,7 @@ impl Body {
     }
 
     fn says(&self) -> String {
-        self.robot.activity(self.now)
+        self.robot.activity(self.now, &Frames::default())
     }
 }
 
@@ -267,7 +267,7 @@ fn a_costmap_serves_as_sight() {
     let mut robot = Robot::new(from_map.clone(), RobotId(1));
     robot.track.add(1, start_of('1'));
     robot.tick(0.0);
-    assert_eq!(robot.activity(0.0), "waiting for a map on map");
+    assert_eq!(robot.activity(0.0, &Frames::default()), "waiting for a map on map");
     let mut map = views::occupancy(robot.map(), Header::default(), &from_map);
     let rows = PLAN.iter().rev().flat_map(|row| row.bytes());
     map.data = rows
@@ -278,6 +278,39 @@ fn a_costmap_serves_as_sight() {
         robot.tick(0.1 * f64::from(tick));
     }
     // Its wheels are the node's: they wait for a scanner that shows what is ahead.
-    assert_eq!(robot.activity(0.5), "waiting for scan: no scan came lately");
+    assert_eq!(robot.activity(0.5, &Frames::default()), "waiting for scan: no scan came lately");
     assert!(robot.map().is_free(Cell::new(3, 4)) && robot.map().is_obstacle(Cell::new(0, 0)));
+}
+
+#[test]
+fn a_scanner_that_nothing_places_shows_nothing() {
+    let mut robot = Robot::new(parameters(), RobotId(1));
+    robot.track.add(1, start_of('1'));
+    robot.tick(0.0);
+    robot.lose_scanner("laser".to_owned());
+    robot.tick(0.1);
+    assert_eq!(robot.order(0.1), Order::Stay);
+    let frames = Frames::default();
+    assert_eq!(
+        robot.activity(0.1, &frames),
+        "waiting: no transform from laser to base_link yet; nothing came on /tf"
+    );
+}
+
+#[test]
+fn odometry_in_another_frame_and_a_place_off_the_map_are_told_once() {
+    let mut robot = Robot::new(parameters(), RobotId(1));
+    let mut message = Odometry::default();
+    message.header.frame_id = "odom".to_owned();
+    message.pose.pose.position.x = 5000.0;
+    let mut told = Vec::new();
+    for tick in 0..4 {
+        robot.odometry(&message);
+        told.extend(robot.take_complaint());
+        robot.tick(f64::from(tick));
+        told.extend(robot.take_complaint());
+    }
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].contains("set global_frame to odom"), "{told:?}");
+    assert!(told[1].contains("set origin_x"), "{told:?}");
 }

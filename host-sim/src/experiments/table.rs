@@ -75,6 +75,8 @@ pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metr
             if rows.iter().any(|row| row.waiting > Some(0.0)) {
                 let _ = writeln!(text, "Robot-ticks of {planner} spent waiting:\n");
                 table(&mut text, &rows, |row| percent(row.waiting));
+            } else if rows.iter().any(|row| row.waiting.is_some()) {
+                let _ = writeln!(text, "Robots of {planner} never waited.\n");
             }
             if rows.iter().any(|row| row.false_claims > 0) {
                 let _ = writeln!(text, "Runs of {planner} with a false claim:\n");
@@ -83,7 +85,9 @@ pub fn markdown(comparisons: &[Comparison], reference: PlannerKind, metric: Metr
         }
     }
     text.push_str(
-        "± is half of the 95 % confidence interval; runs in one world count as related.\n",
+        "± is half of the 95 % confidence interval; where that is wide, its ends stand in brackets. \
+         Runs in one world count as related; where all are in one world, its starts count as \
+         independent, and the interval is about that world.\n",
     );
     text
 }
@@ -140,13 +144,20 @@ fn percent(share: Option<f64>) -> String {
     share.map_or("–".into(), |share| format!("{:.1} %", 100.0 * share))
 }
 
+/// Intervals of logarithms that are wider than this share of their mean have two halves that
+/// differ too much to be told as one.
+const WIDE: f64 = 0.4;
+
 fn cell(interval: Option<Interval>, digits: usize) -> String {
     match interval {
         None => "–".into(),
-        Some(Interval { mean, low, high }) if high.is_finite() => {
+        Some(Interval { mean, low, high }) if high - low > WIDE * mean => match high.is_finite() {
+            true => format!("{mean:.digits$} ({low:.digits$} to {high:.digits$})"),
+            false => format!("{mean:.digits$}"),
+        },
+        Some(Interval { mean, low, high }) => {
             format!("{mean:.digits$} ±{:.digits$}", (high - low) / 2.0)
         }
-        Some(Interval { mean, .. }) => format!("{mean:.digits$}"),
     }
 }
 
@@ -200,4 +211,20 @@ fn fields(interval: Option<Interval>) -> [String; 3] {
     interval.map_or_else(Default::default, |Interval { mean, low, high }| {
         [mean, low, high].map(|number| number.to_string())
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wide_intervals_are_told_by_their_ends() {
+        let told = |low, high| {
+            let mean = 0.926;
+            cell(Some(Interval { mean, low, high }), 3)
+        };
+        assert_eq!(told(0.9, 0.95), "0.926 ±0.025");
+        assert_eq!(told(0.337, 2.542), "0.926 (0.337 to 2.542)");
+        assert_eq!(told(0.0, f64::INFINITY), "0.926");
+    }
 }

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueEnum};
 use host_sim::experiments::{GivenMap, Metric, Place, Settings, this_program};
 use host_sim::planners::PlannerKind;
 use host_sim::scenario::{MediumKind, Preset, Trouble, TroubleArgs, parse_share};
@@ -50,8 +51,8 @@ pub(super) struct SettingsArgs {
     /// Sensor ranges in cells, 1 to 31.
     #[arg(long, value_name = "R,…", value_delimiter = ',', default_value = "5", value_parser = clap::value_parser!(u8).range(1..=31))]
     range: Vec<u8>,
-    /// Families of worlds to generate, or `all`.
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse_families)]
+    /// Families of worlds to generate.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = families())]
     families: Vec<Families>,
     /// Worlds of each family.
     #[arg(long, value_name = "N", default_value_t = 20)]
@@ -77,11 +78,14 @@ pub(super) struct SettingsArgs {
 #[derive(Clone)]
 struct Families(Vec<Family>);
 
-fn parse_families(text: &str) -> Result<Families, String> {
-    match text {
+/// The names, which help and errors list.
+fn families() -> impl TypedValueParser<Value = Families> {
+    let all = PossibleValue::new("all").help("All of them");
+    let each = Family::ALL.iter().filter_map(ValueEnum::to_possible_value);
+    PossibleValuesParser::new(each.chain([all])).try_map(|name| match name.as_str() {
         "all" => Ok(Families(Family::ALL.to_vec())),
-        _ => clap::ValueEnum::from_str(text, false).map(|family| Families(vec![family])),
-    }
+        name => Family::from_str(name, false).map(|family| Families(vec![family])),
+    })
 }
 
 impl SettingsArgs {

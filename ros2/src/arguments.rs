@@ -13,6 +13,8 @@ pub(crate) struct Arguments {
     /// Topics to rename: from and to.
     renames: Vec<(String, String)>,
     pub(crate) parameters: Mapping,
+    /// What is likely not meant so.
+    pub(crate) notes: Vec<String>,
 }
 
 /// What is wrong with the command line.
@@ -20,7 +22,7 @@ pub(crate) struct Arguments {
 pub(crate) enum ArgumentError {
     #[error(
         "`{0}` is no argument of this node; it takes what every node takes: `--ros-args -p \
-         name:=value -r from:=to --params-file file`"
+         name:=value -r from:=to --params-file file`. docs/ros2.md has its parameters"
     )]
     Unknown(String),
     #[error("`{0}` wants a value behind it")]
@@ -46,6 +48,7 @@ impl Arguments {
             name: "explore".to_owned(),
             renames: Vec::new(),
             parameters: Mapping::new(),
+            notes: Vec::new(),
         };
         let mut files = Vec::new();
         let mut assigned = Vec::new();
@@ -85,7 +88,17 @@ impl Arguments {
             let Value::Mapping(nodes) = value else {
                 return Err(no_file("it begins with no name of a node".to_owned()));
             };
-            collect(&nodes, "", &node, &mut read.parameters);
+            let mut others = Vec::new();
+            if !collect(&nodes, "", &node, &mut read.parameters, &mut others) {
+                let others = match others.as_slice() {
+                    [] => "there is no `ros__parameters` in it".to_owned(),
+                    others => format!("it has some for {}", others.join(", ")),
+                };
+                read.notes.push(format!(
+                    "{} has no parameters for {node}; {others}. `-r __node:=name` names this node",
+                    file.display()
+                ));
+            }
         }
         for (name, value) in assigned {
             let value = serde_yaml_ng::from_str(&value)
@@ -125,8 +138,16 @@ fn absolute(namespace: &str) -> String {
 }
 
 /// Adds what a file has for the node: under its name, its full name in one or in parts, or
-/// `/**`. What comes later counts.
-fn collect(nodes: &Mapping, within: &str, node: &str, into: &mut Mapping) {
+/// `/**`. What comes later counts. Says whether there was any, and adds the names of `others`
+/// that the file has parameters for.
+fn collect(
+    nodes: &Mapping,
+    within: &str,
+    node: &str,
+    into: &mut Mapping,
+    others: &mut Vec<String>,
+) -> bool {
+    let mut has_ours = false;
     for (key, value) in nodes {
         let (Some(key), Value::Mapping(value)) = (key.as_str(), value) else {
             continue;
@@ -137,18 +158,22 @@ fn collect(nodes: &Mapping, within: &str, node: &str, into: &mut Mapping) {
                 let name = within.trim_start_matches('/');
                 !name.contains('/') && node.rsplit('/').next() == Some(name)
             };
+            has_ours |= is_ours;
             if is_ours {
                 into.extend(
                     value
                         .iter()
                         .map(|(name, value)| (name.clone(), value.clone())),
                 );
+            } else {
+                others.push(within.to_owned());
             }
         } else {
             let path = format!("{within}/{}", key.trim_start_matches('/'));
-            collect(value, &path, node, into);
+            has_ours |= collect(value, &path, node, into, others);
         }
     }
+    has_ours
 }
 
 #[cfg(test)]
@@ -188,6 +213,17 @@ mod tests {
         assert_eq!(of(2)["width"], Value::from(20));
         assert_eq!(of(3)["width"], Value::from(30));
         assert_eq!(of(3)["height"], Value::from(5));
+        let of_another = "explore_node:\n  ros__parameters: {width: 10}\n";
+        let read = parse("--params-file any -r __ns:=/robot1", of_another).unwrap();
+        let [note] = &read.notes[..] else {
+            panic!("{:?}", read.notes);
+        };
+        assert!(
+            note.contains("for /robot1/explore; it has some for /explore_node"),
+            "{note}"
+        );
+        let read = parse("--params-file any -r __node:=explore_node", of_another).unwrap();
+        assert!(read.notes.is_empty(), "{:?}", read.notes);
         let named = parse(
             "--ros-args --params-file x",
             "explore:\n  ros__parameters: {width: 9}",

@@ -30,7 +30,7 @@ fn run() -> Result<(), Box<dyn Error>> {
     let words = std::env::args().skip(1);
     let arguments = Arguments::parse(words, |path| std::fs::read_to_string(path))?;
     let (parameters, notes) = Parameters::read(arguments.parameters.clone())?;
-    for note in notes {
+    for note in arguments.notes.iter().chain(&notes) {
         eprintln!("[{}]: {note}", arguments.node());
     }
     node::run(&arguments, parameters)?;

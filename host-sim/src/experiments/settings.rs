@@ -106,7 +106,7 @@ pub enum PlanError {
     /// See the message.
     #[error(
         "{}: {setting} is {found} there and {wanted} here; take the folder's settings, or \
-         another folder",
+         another folder (--out)",
         path.display()
     )]
     Differs {

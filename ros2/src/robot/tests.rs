@@ -267,7 +267,10 @@ fn a_costmap_serves_as_sight() {
     let mut robot = Robot::new(from_map.clone(), RobotId(1));
     robot.track.add(1, start_of('1'));
     robot.tick(0.0);
-    assert_eq!(robot.activity(0.0, &Frames::default()), "waiting for a map on map");
+    assert_eq!(
+        robot.activity(0.0, &Frames::default()),
+        "waiting for a map on map"
+    );
     let mut map = views::occupancy(robot.map(), Header::default(), &from_map);
     let rows = PLAN.iter().rev().flat_map(|row| row.bytes());
     map.data = rows
@@ -278,7 +281,10 @@ fn a_costmap_serves_as_sight() {
         robot.tick(0.1 * f64::from(tick));
     }
     // Its wheels are the node's: they wait for a scanner that shows what is ahead.
-    assert_eq!(robot.activity(0.5, &Frames::default()), "waiting for scan: no scan came lately");
+    assert_eq!(
+        robot.activity(0.5, &Frames::default()),
+        "waiting for scan: no scan came lately"
+    );
     assert!(robot.map().is_free(Cell::new(3, 4)) && robot.map().is_obstacle(Cell::new(0, 0)));
 }
 

@@ -361,10 +361,10 @@ mod tests {
 
     #[test]
     fn lines_may_be_left_out() {
-        let text = "a 1\nb\nc 2\n";
+        let text = "a 1\nb\nd\nc 2\n";
         assert_eq!(values("a {} …… c {}", text), [1.0, 2.0]);
         assert!(find("a {} … c {}", text).is_err());
-        assert_eq!(values("{} … b … c {}", text), [1.0, 2.0]);
+        assert_eq!(values("a {} … d c {}", text), [1.0, 2.0]);
     }
 
     #[test]

@@ -79,7 +79,8 @@ pub(crate) fn functions(header: &str) -> Vec<&str> {
     code.filter_map(|line| {
         let (before, _) = line.split_once('(')?;
         let name = before.rsplit([' ', '*']).next()?;
-        name.starts_with("planner_").then_some(name)
+        let is_in_name = |it: char| it.is_ascii_alphanumeric() || it == '_';
+        (name.starts_with("planner_") && name.chars().all(is_in_name)).then_some(name)
     })
     .collect()
 }
@@ -230,6 +231,7 @@ PlannerResult planner_observe(Planner *planner,
 bool planner_is(uint8_t stop);
 void *planner_memory(void);
 static_assert(sizeof(Planner) == 8, \"\");
+typedef char planner_has_its_size[sizeof(Planner) == 8 ? 1 : -1];
 ";
         let found = functions(header);
         assert_eq!(found, ["planner_observe", "planner_is", "planner_memory"]);

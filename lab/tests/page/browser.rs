@@ -144,12 +144,19 @@ impl Browser {
         severe.map(|entry| entry["message"].to_string()).collect()
     }
 
-    /// A picture of the page, as PNG.
+    /// A picture of the page, as PNG. A browser on a busy machine may not have one at once.
     pub(crate) fn picture(&self) -> Vec<u8> {
         let url = format!("{}/screenshot", self.session);
-        let mut answer = ureq::get(&url).call().unwrap();
-        let answer: Value = answer.body_mut().read_json().unwrap();
-        base64(answer["value"].as_str().unwrap())
+        let mut answer = Value::Null;
+        for _ in 0..3 {
+            let request = ureq::get(&url).config().http_status_as_error(false).build();
+            answer = request.call().unwrap().body_mut().read_json().unwrap();
+            if let Some(picture) = answer["value"].as_str() {
+                return base64(picture);
+            }
+            std::thread::sleep(Duration::from_millis(500));
+        }
+        panic!("there is no picture: {answer}");
     }
 }
 

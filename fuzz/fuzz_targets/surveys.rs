@@ -251,6 +251,7 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         scenario,
         scene,
         ways,
+        headings: Vec::new(),
         records,
         found: Vec::new(),
         visible: 0,

@@ -452,12 +452,13 @@ fn repeatable(test: Command) -> Command {
 /// Miri is a thousand times slower than the chip: few cases of each property, and
 /// only the modules that pack bits and bytes.
 fn miri() -> Result<String> {
-    /// Take minutes even so.
-    const SKIPPED: [&str; 5] = [
+    /// Take minutes even so, or a square root, which Miri does not know.
+    const SKIPPED: [&str; 6] = [
         "sight::tests::metres::a_mirrored_robot_is_noticed_by_the_others",
         "sight::tests::metres::a_robot_in_metres_maps_the_room_as_it_is",
         "sight::tests::scan::a_scan_within_its_tolerance_tells_no_lie",
         "sight::tests::scan::ranges_in_millimetres_leave_no_cell_unseen",
+        "sight::tests::zones::",
         "radio::tests::maps_converge_under_loss",
     ];
 

@@ -51,7 +51,7 @@ pub const EXAMPLES: [Example; 8] = [
     },
     Example {
         name: "A hundred robots",
-        what: "They start all over a large building, and join their maps by radio.",
+        what: "They start together in a large building, spread out, and join their maps by radio.",
         address: "map=generate:rooms:256x256:1&robots=100&start=random",
     },
     Example {

@@ -13,7 +13,7 @@ use planner_core::volume::{Heading, Voxel, VoxelPatch};
 use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
-use crate::baselines::voxels::{Union, assign};
+use crate::baselines::voxels::{Chart, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::voxels::{Record, VoxelTrace};
@@ -153,7 +153,7 @@ pub struct Simulation {
     visible: Marks,
     known: Marks,
     /// What a centre knows that sends the robots.
-    centre: Option<Union>,
+    centre: Option<Chart>,
     /// Occupied voxels seen.
     seen: u32,
     now: u32,
@@ -210,7 +210,7 @@ impl Simulation {
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
             centre: (scenario.planner == Planner::Greedy)
-                .then(|| Union::new(scene.extent(), scene.levels())),
+                .then(|| Chart::new(scene.extent(), scene.levels(), scenario.range)),
             scene,
             visible,
             seen: 0,
@@ -306,10 +306,12 @@ impl Simulation {
 
     /// The centre, where there is one, tells every robot where to fly.
     fn send(&mut self) {
-        let Some(centre) = &self.centre else { return };
+        let Some(centre) = &mut self.centre else {
+            return;
+        };
         let alive = || self.robots.iter().filter(|robot| robot.alive);
         let places: Vec<Voxel> = alive().map(|robot| robot.at).collect();
-        let (steps, work) = assign(centre, &places, self.config.range);
+        let (steps, work) = assign(centre, &places);
         let alive = self.robots.iter_mut().filter(|robot| robot.alive);
         for (robot, to) in alive.zip(steps) {
             robot.planner.obey(to, work);

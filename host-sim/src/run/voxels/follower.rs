@@ -6,7 +6,7 @@ use planner_core::volume::{Content, Heading, Voxel, VoxelPatch};
 use planner_core::{Action, Extent, RobotId, Status};
 
 use super::pilot::Pilot;
-use crate::baselines::voxels::{Known, closest};
+use crate::baselines::voxels::{Chart, closest};
 
 /// Steps without anything learnt after which the way out of `voxel_survey` is taken: as
 /// many as that planner waits before no rival counts.
@@ -16,7 +16,8 @@ const PATIENCE: u32 = 512;
 /// place that it can reach shows a frontier: so it ends for the same reasons.
 pub(super) struct Follower {
     inner: Box<dyn Pilot>,
-    range: u8,
+    /// What it knows, for the closest frontier.
+    chart: Chart,
     /// What the centre says, where there is one: the next place, and the work of finding it.
     order: Option<(Option<Voxel>, u32)>,
     known: u32,
@@ -28,29 +29,16 @@ pub(super) struct Follower {
 
 impl Follower {
     pub(super) fn new(inner: Box<dyn Pilot>, range: u8) -> Self {
+        let chart = Chart::new(inner.extent(), inner.levels(), range);
         Self {
             inner,
-            range,
+            chart,
             order: None,
             known: 0,
             idle: 0,
             exhausted: None,
             work: 0,
         }
-    }
-}
-
-impl Known for dyn Pilot {
-    fn extent(&self) -> Extent {
-        Pilot::extent(self)
-    }
-
-    fn levels(&self) -> u8 {
-        Pilot::levels(self)
-    }
-
-    fn content(&self, voxel: Voxel) -> Content {
-        Pilot::content(self, voxel)
     }
 }
 
@@ -63,18 +51,19 @@ impl Pilot for Follower {
             0
         };
         self.known = known;
+        self.chart.copy(|voxel| self.inner.content(voxel));
         let (to, work) = match self.order {
             _ if self.idle > PATIENCE => (None, 0),
             Some(order) => order,
             None if self.exhausted == Some(known) => (None, 0),
-            None => closest(&*self.inner, here, self.range),
+            None => closest(&mut self.chart, here),
         };
         self.work = work;
         if self.order.is_none() && to.is_none() {
             self.exhausted = Some(known);
         }
         // What the centre says of a place that this robot knows otherwise is not flown.
-        match to.filter(|&to| Known::is_pose(&*self.inner, to)) {
+        match to.filter(|&to| self.chart.is_pose(to)) {
             Some(to) => {
                 self.inner.pass();
                 match to == here {

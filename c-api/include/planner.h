@@ -2,7 +2,8 @@
 //
 // Written by `cargo xtask c-header` from c-api/src; do not edit.
 //
-// One robot is one Planner: memory of yours, for example a static variable. The
+// One robot is one Planner, or one PlannerVoxelSurvey where it flies among voxels: memory of
+// yours, for example a static variable. The
 // library allocates nothing and keeps no state elsewhere. Calls for different
 // planners may run at the same time, calls for one planner must not.
 //
@@ -52,6 +53,19 @@
 // Places that `planner_shut` names at most.
 #define PLANNER_MAX_SHUT 8
 
+// Largest width and depth of a box, in voxels.
+#define PLANNER_VOXEL_MAX_SIDE 40
+
+// Most levels of a box.
+#define PLANNER_VOXEL_MAX_LEVELS 16
+
+// Largest range of a sensor, in voxels.
+#define PLANNER_VOXEL_MAX_RANGE 12
+
+// Size of a planner among voxels in words of 8 bytes: what it may take by
+// `fixtures/budget.txt`, and one that tells that it is there.
+#define PLANNER_VOXEL_SURVEY_WORDS 3073
+
 // What came of a call.
 typedef enum {
   // Done.
@@ -62,7 +76,7 @@ typedef enum {
   PLANNER_RESULT_MISALIGNED = 2,
   // There is no planner in this memory; call `planner_create` first.
   PLANNER_RESULT_NOT_CREATED = 3,
-  // The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
+  // The grid or the box is empty or larger than the header's largest, or the robot starts
   // off the grid; or a grid that moves would lie too far from the origin.
   PLANNER_RESULT_EXTENT = 4,
   // The scan's pose is not a number, its largest range is not a positive one, or its
@@ -95,7 +109,7 @@ typedef enum {
   PLANNER_RESULT_FRAME_FIELD = 17,
   // Another robot has this robot's id: give each robot its own.
   PLANNER_RESULT_FRAME_SAME_ID = 18,
-  // The sensor is none of the constants, or its margin is above 3.
+  // The sensor or the field is none of the constants, or the margin is above 3.
   PLANNER_RESULT_SENSOR = 19,
   // The memory is smaller than a planner of this library: the header was included for
   // another size than the library was built for.
@@ -117,6 +131,10 @@ typedef enum {
   PLANNER_RESULT_SAVE_OTHER_ROBOT = 27,
   // The grid was moved 16 times since the robot stopped last.
   PLANNER_RESULT_TOO_OFTEN = 28,
+  // The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`.
+  PLANNER_RESULT_RANGE = 29,
+  // The heading is above 7.
+  PLANNER_RESULT_HEADING = 30,
 } PlannerResult;
 
 // What the robot shall do.
@@ -226,6 +244,21 @@ typedef enum {
   // An obstacle.
   PLANNER_STATE_OBSTACLE = 4,
 } PlannerState;
+
+// What of the voxels within range and in sight a look shows. All but the last also feel what
+// is within 2 voxels all round, as by range finders.
+typedef enum {
+  // All of them.
+  PLANNER_VOXEL_FIELD_ALL_ROUND = 0,
+  // Those no higher than the robot.
+  PLANNER_VOXEL_FIELD_DOWNWARD = 1,
+  // Those of the robot's level: a lidar that turns in a plane.
+  PLANNER_VOXEL_FIELD_LIDAR = 2,
+  // Those in a cone of 90×60 degrees: a depth camera, turned to a heading.
+  PLANNER_VOXEL_FIELD_CAMERA = 3,
+  // Those within `up`, `down`, `side` and `near` of the configuration.
+  PLANNER_VOXEL_FIELD_CUSTOM = 4,
+} PlannerVoxelField;
 
 // Memory for one planner. `planner_create` makes one in it. Do not copy it.
 typedef struct {
@@ -376,6 +409,120 @@ typedef struct {
   // Frames that were damaged, or not signed with the key.
   uint16_t refused;
 } PlannerStatus;
+
+// Memory for one planner among voxels. `planner_voxel_create` makes one in it. Do not copy
+// it.
+typedef struct {
+  uint64_t words[PLANNER_VOXEL_SURVEY_WORDS];
+} PlannerVoxelSurvey;
+
+// How a planner among voxels is set up. All robots of a fleet agree on everything but the
+// id, in which all differ.
+typedef struct {
+  // The robot's number, its own in the fleet; lower ones win ties.
+  uint8_t id;
+  // Width of the box, in voxels.
+  uint16_t width;
+  // Its depth from north to south, in voxels.
+  uint16_t depth;
+  // Its levels.
+  uint8_t levels;
+  // How far a look reaches, in voxels: 2 to `PLANNER_VOXEL_MAX_RANGE`.
+  uint8_t range;
+  // What a look shows: a `PlannerVoxelField`.
+  uint8_t field;
+  // For `PLANNER_VOXEL_FIELD_CUSTOM`, how far up it shows: the tangent of the highest
+  // elevation, in 256ths; 65535: up to straight above.
+  uint16_t up;
+  // The same down.
+  uint16_t down;
+  // The tangent of half its width on the plan, in 256ths; 0: it shows all round.
+  uint16_t side;
+  // Distance in voxels within which it shows everything in all directions. A robot that
+  // feels less than 2 flies only where its field itself has shown every voxel beside its
+  // way.
+  uint8_t near;
+  // Side of a voxel in millimetres, above 0.
+  uint16_t cell_mm;
+  // Where the north-western corner of the lowest level lies in the common frame, in
+  // millimetres.
+  int32_t origin_x_mm;
+  // The same along y.
+  int32_t origin_y_mm;
+  // Bytes that the robot may send a tick on average; 0: it only listens, which
+  // `planner_voxel_status` tells.
+  uint16_t bytes_per_tick;
+  // As of `PlannerConfig`: 0 for frames without a signature, anything else for those that
+  // are signed with `key`.
+  uint8_t is_keyed;
+  // The key of the fleet.
+  uint8_t key[16];
+} PlannerVoxelConfig;
+
+// One voxel of the box.
+typedef struct {
+  // Column, growing to the east.
+  int16_t x;
+  // Row, growing to the south.
+  int16_t y;
+  // Level; 0 is the lowest.
+  int16_t z;
+} PlannerVoxel;
+
+// One voxel that was seen.
+typedef struct {
+  // Which one.
+  PlannerVoxel voxel;
+  // 0: it is free. Anything else: something is there.
+  uint8_t occupied;
+} PlannerVoxelSeen;
+
+// What a tick decided.
+typedef struct {
+  // What to do. Nothing is reported after a move: the next look tells where the robot is.
+  PlannerActionKind kind;
+  // For a move, where to fly: a voxel that shares a face with the robot's, and that has
+  // nothing beside it. Otherwise where the robot is.
+  PlannerVoxel to;
+  // Where the sensor should be turned in the next look, which is 0 before the first tick:
+  // eighths of a turn from the east over the south, 0 to 7. It may turn while the robot
+  // flies.
+  uint8_t heading;
+  // Why, for a wait; `PLANNER_WAIT_NONE`: it chooses where to fly next, or turns.
+  PlannerWait wait;
+  // Why, for a stop.
+  PlannerStop stop;
+  // Free voxels beside unknown ones, for a stop.
+  uint32_t frontiers;
+  // The voxel that could not be entered, for `PLANNER_STOP_BLOCKED`, or be seen, for
+  // `PLANNER_STOP_UNSEEN`.
+  PlannerVoxel at;
+} PlannerVoxelAction;
+
+// Where a robot is, where it goes, what it knows, and what it has from others. Counts begin
+// when the planner is created; those of 16 bits stay at their largest value.
+typedef struct {
+  // Where it is.
+  PlannerVoxel position;
+  // Where it flies to; where it is, if it flies nowhere.
+  PlannerVoxel goal;
+  // Whether it flies somewhere: 0 or 1.
+  uint8_t has_goal;
+  // Whether it has stopped: 0 or 1.
+  uint8_t has_stopped;
+  // Whether its configuration lets it send nothing: 0 or 1.
+  uint8_t is_mute;
+  // Voxels of the box that are known.
+  uint32_t known;
+  // Those of them that are free and beside unknown ones.
+  uint32_t frontiers;
+  // Voxels that others told before the robot saw them.
+  uint32_t heard_voxels;
+  // Frames of another robot with this robot's id.
+  uint16_t same_id;
+  // Frames that were damaged, or not signed with the key.
+  uint16_t refused;
+} PlannerVoxelStatus;
 
 #ifdef __cplusplus
 extern "C" {
@@ -654,6 +801,86 @@ const char *planner_stop_text(uint8_t stop);
 // Stack: 128 bytes.
 const char *planner_wait_text(uint8_t wait);
 
+// Creates a planner among voxels in place, or starts it anew. `bytes` is
+// `sizeof(PlannerVoxelSurvey)`. After any result but `PLANNER_RESULT_OK` nothing has changed.
+//
+// One step of a robot is `planner_voxel_observe`; then `planner_voxel_transmit` until there is
+// nothing to send, and `planner_voxel_receive`; then `planner_voxel_tick`.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_voxel_create(PlannerVoxelSurvey *survey,
+                                   size_t bytes,
+                                   const PlannerVoxelConfig *config);
+
+// Takes in a look: where the robot is, where its sensor is turned (eighths of a turn from
+// the east over the south; of no matter if it shows all round), and *every* voxel within
+// range, in the field and in sight over free ones, each with whether something is there. One
+// look is one call. A voxel that a look should show and never does ends in
+// `PLANNER_STOP_UNSEEN`, and 100 looks in a row that show nothing are those of a sensor that
+// failed. Voxels outside of the box are passed over.
+//
+// A robot that is not where the last move sent it was kept from there.
+// `PLANNER_RESULT_OFF_GRID`: it is not in the box; nothing is learnt and nothing decided
+// until it is. Any other result but `PLANNER_RESULT_OK` changes nothing.
+//
+// Work: the voxels seen, and at most a ray for each voxel within range.
+//
+// Stack: 4096 bytes.
+PlannerResult planner_voxel_observe(PlannerVoxelSurvey *survey,
+                                    PlannerVoxel at,
+                                    uint8_t heading,
+                                    const PlannerVoxelSeen *seen,
+                                    size_t count);
+
+// Decides what the robot does now. Call it once a step. Work: at most about 8,000,000
+// instructions.
+//
+// Stack: 9472 bytes.
+PlannerResult planner_voxel_tick(PlannerVoxelSurvey *survey, PlannerVoxelAction *action);
+
+// Goes on after a stop with the map at hand: what was given up is tried again. Without a
+// stop it does only the latter.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_resume(PlannerVoxelSurvey *survey);
+
+// Writes the next frame for the other robots into `frame`, which holds `PLANNER_MAX_FRAME`
+// bytes, and its length into `length`: 0 if there is nothing to send any more. Work: 256
+// words for each of at most 12 pieces of the map.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_voxel_transmit(PlannerVoxelSurvey *survey, uint8_t *frame, size_t *length);
+
+// Takes in a frame of another robot among voxels, at any time. A result from
+// `PLANNER_RESULT_FRAME_LENGTH` on tells why it was not taken; nothing has changed then.
+//
+// Stack: 1024 bytes.
+PlannerResult planner_voxel_receive(PlannerVoxelSurvey *survey,
+                                    const uint8_t *frame,
+                                    size_t length);
+
+// Takes in where robot `id` is, where it flies and whether it has stopped, as it was told by
+// other means than frames, which tell it too; of `status` nothing else is read.
+// `PLANNER_RESULT_FRAME_OWN`: the id is the robot's own. `PLANNER_RESULT_OFF_GRID`: the other
+// robot or its goal is not in the box. Then nothing has changed.
+//
+// Stack: 384 bytes.
+PlannerResult planner_voxel_hear(PlannerVoxelSurvey *survey,
+                                 uint8_t id,
+                                 const PlannerVoxelStatus *status);
+
+// Writes where the robot is, where it flies, what it knows, and what it has from others.
+// Work: 14 words for each of at most 400 tiles of voxels.
+//
+// Stack: 384 bytes.
+PlannerResult planner_voxel_status(PlannerVoxelSurvey *survey, PlannerVoxelStatus *status);
+
+// Writes the `PlannerState` of a voxel, none of which is doubtful.
+// `PLANNER_RESULT_OFF_GRID`: there is no such voxel.
+//
+// Stack: 256 bytes.
+PlannerResult planner_voxel_state(PlannerVoxelSurvey *survey, PlannerVoxel voxel, uint8_t *state);
+
 #ifdef __cplusplus
 }  // extern "C"
 #endif  // __cplusplus
@@ -667,10 +894,14 @@ const char *planner_wait_text(uint8_t wait);
 static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
+static_assert(sizeof(PlannerVoxelAction) == 24, "compile with -fshort-enums");
+static_assert(sizeof(PlannerVoxelSurvey) == 8 * PLANNER_VOXEL_SURVEY_WORDS, "a survey has its own size");
 #elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 201112L
 _Static_assert(sizeof(PlannerAction) == 16, "compile with -fshort-enums");
 _Static_assert(sizeof(PlannerResult) == 1, "compile with -fshort-enums");
 _Static_assert(sizeof(Planner) == 8 * PLANNER_WORDS, "a planner has its own size");
+_Static_assert(sizeof(PlannerVoxelAction) == 24, "compile with -fshort-enums");
+_Static_assert(sizeof(PlannerVoxelSurvey) == 8 * PLANNER_VOXEL_SURVEY_WORDS, "a survey has its own size");
 #else // Before C11: an array of -1 is no array.
 typedef char planner_compile_with_fshort_enums[sizeof(PlannerAction) == 16 ? 1 : -1];
 typedef char planner_has_its_own_size[sizeof(Planner) == 8 * PLANNER_WORDS ? 1 : -1];

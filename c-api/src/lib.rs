@@ -1,4 +1,5 @@
-//! The explorer behind a C interface: `include/planner.h` for firmware in C.
+//! The explorer, and the planner among voxels, behind a C interface: `include/planner.h` for
+//! firmware in C.
 //!
 //! The verbs are those of everywhere: observe, tick, report, transmit, receive. A planner
 //! lives in memory of the caller; pointers that are null or not aligned, and
@@ -11,6 +12,7 @@ mod limits;
 mod place;
 mod queries;
 mod types;
+mod voxels;
 
 use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
@@ -37,8 +39,16 @@ pub use types::{
     PlannerDirection, PlannerPose, PlannerResult, PlannerSeen, PlannerSensor, PlannerState,
     PlannerStatus, PlannerStop, PlannerWait,
 };
+pub use voxels::{
+    PLANNER_VOXEL_MAX_LEVELS, PLANNER_VOXEL_MAX_RANGE, PLANNER_VOXEL_MAX_SIDE,
+    PLANNER_VOXEL_SURVEY_WORDS, PlannerVoxel, PlannerVoxelAction, PlannerVoxelConfig,
+    PlannerVoxelField, PlannerVoxelSeen, PlannerVoxelStatus, PlannerVoxelSurvey,
+    planner_voxel_create, planner_voxel_hear, planner_voxel_observe, planner_voxel_receive,
+    planner_voxel_resume, planner_voxel_state, planner_voxel_status, planner_voxel_tick,
+    planner_voxel_transmit,
+};
 
-use place::{Robot, input, inputs, output, robot};
+use place::{create, fits, input, inputs, output, robot};
 
 /// The robot is on the cell that it was sent to.
 pub const PLANNER_MOVED: u8 = 0;
@@ -69,9 +79,7 @@ pub extern "C" fn planner_create(
 ) -> PlannerResult {
     answer(|| {
         let config = *input(config)?;
-        if !Robot::fits(bytes) {
-            return Err(PlannerResult::Memory);
-        }
+        fits::<Planner>(bytes)?;
         let extent = Extent::new(config.width, config.height);
         let start = Cell::new(config.start.x, config.start.y);
         // All of it before the memory is touched.
@@ -96,10 +104,7 @@ pub extern "C" fn planner_create(
             bytes_per_tick: config.bytes_per_tick,
             key: (config.is_keyed != 0).then_some(Key(config.key)),
         };
-        let robot = Robot::create(planner)?;
-        robot.is_mute = u32::from(config.bytes_per_tick == 0);
-        robot
-            .explorer
+        create(planner, config.id, config.bytes_per_tick)?
             .reset(explorer, RobotId(config.id), extent, start)
             .map_err(|_| PlannerResult::Extent)
     })
@@ -147,7 +152,7 @@ pub extern "C" fn planner_observe_scan(
         let pose = input(pose)?;
         let scan = read_scan(pose, max_range, tolerance, inputs(beams, count)?);
         let sighting = or_astray(scan.sighting(), pose)?;
-        observe(&mut robot.explorer, &sighting)
+        observe(&mut robot.planner, &sighting)
     })
 }
 
@@ -170,9 +175,9 @@ pub extern "C" fn planner_observe_long_scan(
         let pose = input(pose)?;
         let scan = read_scan(pose, max_range, tolerance, inputs(beams, count)?);
         let look = or_astray(scan.long_sighting(), pose)?;
-        observe(&mut robot.explorer, &look.near())?;
+        observe(&mut robot.planner, &look.near())?;
         for (at, free, blocked) in look.far_tiles() {
-            robot.explorer.observe_far(at, free, blocked);
+            robot.planner.observe_far(at, free, blocked);
         }
         Ok(())
     })
@@ -200,7 +205,7 @@ pub extern "C" fn planner_observe_cells(
                 _ => sighting.see_blocked(cell),
             }
         }
-        observe(&mut robot.explorer, &sighting)
+        observe(&mut robot.planner, &sighting)
     })
 }
 
@@ -212,8 +217,8 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
     answer(|| {
         let robot = robot(planner)?;
         let action = output(action)?;
-        let decided = robot.explorer.tick();
-        action.write(PlannerAction::new(decided, robot.explorer.waiting()));
+        let decided = robot.planner.tick();
+        action.write(PlannerAction::new(decided, robot.planner.waiting()));
         Ok(())
     })
 }
@@ -226,7 +231,7 @@ pub extern "C" fn planner_tick(planner: *mut Planner, action: *mut PlannerAction
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
     answer(|| {
-        robot(planner)?.explorer.resume();
+        robot(planner)?.planner.resume();
         Ok(())
     })
 }
@@ -239,7 +244,7 @@ pub extern "C" fn planner_resume(planner: *mut Planner) -> PlannerResult {
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_go_home(planner: *mut Planner) -> PlannerResult {
     answer(|| {
-        robot(planner)?.explorer.go_home();
+        robot(planner)?.planner.go_home();
         Ok(())
     })
 }
@@ -251,7 +256,7 @@ pub extern "C" fn planner_go_home(planner: *mut Planner) -> PlannerResult {
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_go_to(planner: *mut Planner, cell: PlannerCell) -> PlannerResult {
     answer(|| {
-        let is_sent = robot(planner)?.explorer.go_to(Cell::new(cell.x, cell.y));
+        let is_sent = robot(planner)?.planner.go_to(Cell::new(cell.x, cell.y));
         is_sent.then_some(()).ok_or(PlannerResult::OffGrid)
     })
 }
@@ -265,7 +270,7 @@ pub extern "C" fn planner_go_to(planner: *mut Planner, cell: PlannerCell) -> Pla
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_energy(planner: *mut Planner, steps: u32) -> PlannerResult {
     answer(|| {
-        robot(planner)?.explorer.energy(steps);
+        robot(planner)?.planner.energy(steps);
         Ok(())
     })
 }
@@ -289,7 +294,7 @@ pub extern "C" fn planner_stop_is_complete(stop: u8) -> bool {
 pub extern "C" fn planner_report(planner: *mut Planner, motion: u8) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        robot.explorer.report(match motion {
+        robot.planner.report(match motion {
             PLANNER_MOVED => Motion::Moved,
             PLANNER_BLOCKED => Motion::Blocked,
             PLANNER_HELD => Motion::Held,
@@ -316,7 +321,7 @@ pub extern "C" fn planner_transmit(
         let frame = output(frame.cast::<[u8; MAX_LEN]>())?;
         let length = output(length)?;
         let mut buffer = [0; MAX_LEN];
-        let written = robot.explorer.transmit(&mut buffer);
+        let written = robot.planner.transmit(&mut buffer);
         frame.write(buffer);
         length.write(written.unwrap_or(0));
         Ok(())
@@ -330,7 +335,7 @@ pub extern "C" fn planner_transmit(
 pub extern "C" fn planner_is_mute(planner: *mut Planner, is_mute: *mut bool) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        output(is_mute)?.write(robot.is_mute != 0);
+        output(is_mute)?.write(robot.is_mute);
         Ok(())
     })
 }
@@ -348,7 +353,7 @@ pub extern "C" fn planner_receive(
     answer(|| {
         let robot = robot(planner)?;
         let frame = inputs(frame, length)?;
-        robot.explorer.receive(frame)?;
+        robot.planner.receive(frame)?;
         Ok(())
     })
 }
@@ -368,7 +373,7 @@ pub extern "C" fn planner_shut(
     count: *mut usize,
 ) -> PlannerResult {
     answer(|| {
-        let shut = robot(planner)?.explorer.map().shut();
+        let shut = robot(planner)?.planner.map().shut();
         let (cells, count) = (output(cells)?, output(count)?);
         let last = shut.places();
         let last = last.get(last.len().saturating_sub(room)..).unwrap_or(&[]);

@@ -42,7 +42,7 @@ pub extern "C" fn planner_keep_out(
             true => None,
             false => Some(input(set.cast::<Cells>())?),
         };
-        let result = robot.explorer.keep_out(set);
+        let result = robot.planner.keep_out(set);
         result.map_err(|_| PlannerResult::KeptOut)
     })
 }
@@ -62,7 +62,7 @@ pub extern "C" fn planner_keep_out(
 pub extern "C" fn planner_recentre(planner: *mut Planner, columns: i8, rows: i8) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        robot.explorer.recentre(columns, rows, |_, _| {})?;
+        robot.planner.recentre(columns, rows, |_, _| {})?;
         Ok(())
     })
 }
@@ -73,7 +73,7 @@ pub extern "C" fn planner_recentre(planner: *mut Planner, columns: i8, rows: i8)
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_settle(planner: *mut Planner) -> PlannerResult {
     answer(|| {
-        robot(planner)?.explorer.settle();
+        robot(planner)?.planner.settle();
         Ok(())
     })
 }
@@ -85,7 +85,7 @@ pub extern "C" fn planner_settle(planner: *mut Planner) -> PlannerResult {
 pub extern "C" fn planner_saved_bytes(planner: *mut Planner, bytes: *mut usize) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        output(bytes)?.write(robot.explorer.saved_bytes());
+        output(bytes)?.write(robot.planner.saved_bytes());
         Ok(())
     })
 }
@@ -109,7 +109,7 @@ pub extern "C" fn planner_save(
     answer(|| {
         let robot = robot(planner)?;
         let (page, written) = (page(bytes, room)?, output(written)?);
-        written.write(robot.explorer.save(first, page));
+        written.write(robot.planner.save(first, page));
         Ok(())
     })
 }
@@ -128,7 +128,7 @@ pub extern "C" fn planner_restore(
 ) -> PlannerResult {
     answer(|| {
         let robot = robot(planner)?;
-        robot.explorer.restore(inputs(bytes, count)?)?;
+        robot.planner.restore(inputs(bytes, count)?)?;
         Ok(())
     })
 }
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(planner_add_rectangle(set, cell(3, 9), cell(7, 3)), OK);
         assert_eq!(planner_keep_out(ready, set), OK);
         let map = |at: PlannerCell| {
-            let map = robot(ready).unwrap().explorer.map();
+            let map = robot(ready).unwrap().planner.map();
             map.keeps_out(Cell::new(at.x, at.y))
         };
         assert!(map(cell(3, 3)) && map(cell(7, 9)) && !map(cell(8, 9)));
@@ -183,7 +183,7 @@ mod tests {
                 ..CONFIG
             },
         );
-        let place = || robot(ready).unwrap().explorer.status().position;
+        let place = || robot(ready).unwrap().planner.status().position;
         let (x, y) = (CONFIG.start.x, CONFIG.start.y);
         let columns = (x / 8 + 1) as i8;
         assert_eq!(planner_recentre(ready, columns, 0), PlannerResult::OffGrid);

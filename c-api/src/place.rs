@@ -68,65 +68,92 @@ pub(crate) type Cells = CellSet<TILES, TILES>;
 const _: () = assert!(size_of::<Cells>() == size_of::<PlannerCellSet>());
 const _: () = assert!(align_of::<Cells>() == align_of::<PlannerCellSet>());
 
-/// What lies in a [`Planner`] once it is created.
-#[repr(C)]
-pub(crate) struct Robot {
-    /// [`CREATED`]; anything else: no planner was created here.
-    created: u32,
-    /// Whether the configuration lets it send nothing; anything but 0: it does.
-    pub(crate) is_mute: u32,
-    pub(crate) explorer: Explorer<TILES, TILES>,
+/// Memory of the caller in which one planner lives.
+pub(crate) trait Memory: Sized {
+    type Planner;
+    /// One that is not set up. All of it is zero: the compiler clears the memory in place,
+    /// and needs neither a copy on the stack nor one in flash.
+    const VACANT: Self::Planner;
+    /// The first word once it is created, for each kind of planner another.
+    const CREATED: u32;
 }
 
-const _: () = assert!(
-    size_of::<Robot>() <= size_of::<Planner>(),
-    "the explorer does not fit in a Planner: raise PLANNER_WORDS"
-);
-const _: () = assert!(align_of::<Robot>() <= align_of::<Planner>());
+impl Memory for Planner {
+    type Planner = Explorer<TILES, TILES>;
+    const VACANT: Self::Planner = Explorer::vacant();
+    const CREATED: u32 = 0x9e37_79b1;
+}
 
-/// The first word of every planner.
-const CREATED: u32 = 0x9e37_79b1;
+/// What lies in such a memory once it is created.
+#[repr(C)]
+pub(crate) struct Robot<P> {
+    /// [`Memory::CREATED`]; anything else: no planner was created here.
+    created: u32,
+    /// Its number in the fleet.
+    pub(crate) id: u8,
+    /// Whether the configuration lets it send nothing.
+    pub(crate) is_mute: bool,
+    pub(crate) planner: P,
+}
 
-impl Robot {
-    /// Whether a header that tells these bytes is that of this library.
-    pub(crate) const fn fits(bytes: usize) -> bool {
-        bytes == size_of::<Planner>()
+/// The planner fits in its memory; both are as they are for the C compiler.
+const fn has_room<M: Memory>() {
+    assert!(
+        size_of::<Robot<M::Planner>>() <= size_of::<M>(),
+        "the planner does not fit in its memory: raise its number of words"
+    );
+    assert!(align_of::<Robot<M::Planner>>() <= align_of::<M>());
+}
+
+/// Whether a header that tells these bytes is that of this library.
+pub(crate) fn fits<M>(bytes: usize) -> Result<(), PlannerResult> {
+    match bytes == size_of::<M>() {
+        true => Ok(()),
+        false => Err(PlannerResult::Memory),
     }
+}
 
-    /// A planner without a map, in place.
-    pub(crate) fn create<'a>(memory: *mut Planner) -> Result<&'a mut Self, PlannerResult> {
-        check(memory)?;
-        let place = memory.cast::<Self>();
-        // SAFETY: inside of the memory, which `check` has looked at and which is
-        // large enough by the assertions above.
-        let (created, is_mute, explorer) = unsafe {
-            (
-                &raw mut (*place).created,
-                &raw mut (*place).is_mute,
-                &raw mut (*place).explorer,
-            )
-        };
-        // A constant that is all zero: the compiler clears the memory in place, and
-        // needs neither a copy on the stack nor one in flash.
-        output(explorer)?.write(const { Explorer::vacant() });
-        output(is_mute)?.write(0);
-        output(created)?.write(CREATED);
-        robot(memory)
-    }
+/// A planner that is not set up, in place; `id` is the robot's, and what it may send a tick.
+pub(crate) fn create<'a, M: Memory>(
+    memory: *mut M,
+    id: u8,
+    bytes_per_tick: u16,
+) -> Result<&'a mut M::Planner, PlannerResult> {
+    const { has_room::<M>() }
+    check(memory)?;
+    let place = memory.cast::<Robot<M::Planner>>();
+    // SAFETY: inside of the memory, which `check` has looked at and which is
+    // large enough by the assertions above.
+    let (created, its_id, is_mute, planner) = unsafe {
+        (
+            &raw mut (*place).created,
+            &raw mut (*place).id,
+            &raw mut (*place).is_mute,
+            &raw mut (*place).planner,
+        )
+    };
+    output(planner)?.write(const { M::VACANT });
+    output(its_id)?.write(id);
+    output(is_mute)?.write(bytes_per_tick == 0);
+    output(created)?.write(M::CREATED);
+    Ok(&mut robot(memory)?.planner)
 }
 
 /// The planner in this memory.
-pub(crate) fn robot<'a>(memory: *mut Planner) -> Result<&'a mut Robot, PlannerResult> {
+pub(crate) fn robot<'a, M: Memory>(
+    memory: *mut M,
+) -> Result<&'a mut Robot<M::Planner>, PlannerResult> {
+    const { has_room::<M>() }
     check(memory)?;
     // SAFETY: not null, aligned, and by the header's contract as large as a
-    // Planner. Any bits are a valid u32.
+    // planner's memory. Any bits are a valid u32.
     let created = unsafe { memory.cast::<u32>().read() };
-    if created != CREATED {
+    if created != M::CREATED {
         return Err(PlannerResult::NotCreated);
     }
     // SAFETY: only `create` writes that word, before a whole Robot; it fits by the
     // assertions above. The header forbids other uses of the memory meanwhile.
-    Ok(unsafe { &mut *memory.cast::<Robot>() })
+    Ok(unsafe { &mut *memory.cast::<Robot<M::Planner>>() })
 }
 
 /// A value that the caller gives.

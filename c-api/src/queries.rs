@@ -71,7 +71,7 @@ pub extern "C" fn planner_status(
     status: *mut PlannerStatus,
 ) -> PlannerResult {
     answer(|| {
-        let explorer = &robot(planner)?.explorer;
+        let explorer = &robot(planner)?.planner;
         let (now, map, hearsay) = (explorer.status(), explorer.map(), explorer.hearsay());
         let goal = now.goal.unwrap_or(now.position);
         output(status)?.write(PlannerStatus {
@@ -105,7 +105,7 @@ pub extern "C" fn planner_waypoint(
     waypoint: *mut PlannerCell,
 ) -> PlannerResult {
     answer(|| {
-        let found = robot(planner)?.explorer.waypoint();
+        let found = robot(planner)?.planner.waypoint();
         let (has_waypoint, waypoint) = (output(has_waypoint)?, output(waypoint)?);
         has_waypoint.write(found.is_some());
         if let Some(cell) = found {
@@ -127,7 +127,7 @@ pub extern "C" fn planner_way(
     count: *mut usize,
 ) -> PlannerResult {
     answer(|| {
-        let way = robot(planner)?.explorer.way();
+        let way = robot(planner)?.planner.way();
         let count = output(count)?;
         let mut written = 0;
         for cell in way.take(room) {
@@ -149,7 +149,7 @@ pub extern "C" fn planner_cell(
     state: *mut u8,
 ) -> PlannerResult {
     answer(|| {
-        let explorer = &robot(planner)?.explorer;
+        let explorer = &robot(planner)?.planner;
         let cell = Cell::new(cell.x, cell.y);
         if !explorer.map().extent().contains(cell) {
             return Err(PlannerResult::OffGrid);
@@ -172,7 +172,7 @@ pub extern "C" fn planner_row(
     count: *mut usize,
 ) -> PlannerResult {
     answer(|| {
-        let map = robot(planner)?.explorer.map();
+        let map = robot(planner)?.planner.map();
         let (extent, count) = (map.extent(), output(count)?);
         if !extent.contains(Cell::new(0, y)) {
             return Err(PlannerResult::OffGrid);
@@ -216,12 +216,12 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
 }
 
 /// By [`PlannerResult`]. What Rust's `Display` says too begins with the same words.
-pub(crate) const RESULTS: [&CStr; 29] = [
+pub(crate) const RESULTS: [&CStr; 31] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
     c"no planner was created in this memory",
-    c"the grid is empty, too large, or the start lies off it",
+    c"the grid or box is empty, too large, or the start lies off it",
     c"the scan's pose or largest range cannot be, or its tolerance is not between 0 and 0.25 cells",
     c"too many values",
     c"no such motion",
@@ -236,7 +236,7 @@ pub(crate) const RESULTS: [&CStr; 29] = [
     c"the frame is the robot's own",
     c"the frame's fields are out of range",
     c"another robot has the id of this one",
-    c"no such sensor",
+    c"no such sensor or field",
     c"header and library are of different sizes",
     c"no such clearance",
     c"the robot or its home lies in cells that it is to keep out of",
@@ -246,6 +246,8 @@ pub(crate) const RESULTS: [&CStr; 29] = [
     c"the save is of another grid",
     c"the save is of another robot",
     c"the grid was moved too often since the last stop",
+    c"no such range",
+    c"no such heading",
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop), in the same words.

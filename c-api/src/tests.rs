@@ -4,6 +4,7 @@ mod missions;
 mod queries;
 mod radio;
 mod scans;
+mod voxels;
 
 use std::ptr::{null, null_mut};
 

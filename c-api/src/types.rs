@@ -17,7 +17,7 @@ pub enum PlannerResult {
     Misaligned = 2,
     /// There is no planner in this memory; call `planner_create` first.
     NotCreated = 3,
-    /// The grid is empty or larger than `PLANNER_MAX_CELLS`, or the robot starts
+    /// The grid or the box is empty or larger than the header's largest, or the robot starts
     /// off the grid; or a grid that moves would lie too far from the origin.
     Extent = 4,
     /// The scan's pose is not a number, its largest range is not a positive one, or its
@@ -51,7 +51,7 @@ pub enum PlannerResult {
     FrameField = 17,
     /// Another robot has this robot's id: give each robot its own.
     FrameSameId = 18,
-    /// The sensor is none of the constants, or its margin is above 3.
+    /// The sensor or the field is none of the constants, or the margin is above 3.
     Sensor = 19,
     /// The memory is smaller than a planner of this library: the header was included for
     /// another size than the library was built for.
@@ -73,6 +73,10 @@ pub enum PlannerResult {
     SaveOtherRobot = 27,
     /// The grid was moved 16 times since the robot stopped last.
     TooOften = 28,
+    /// The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`.
+    Range = 29,
+    /// The heading is above 7.
+    Heading = 30,
 }
 
 impl From<MoveError> for PlannerResult {
@@ -433,6 +437,22 @@ pub enum PlannerWait {
     Doubt = 8,
 }
 
+impl From<Option<Wait>> for PlannerWait {
+    fn from(waiting: Option<Wait>) -> Self {
+        match waiting {
+            None => Self::None,
+            Some(Wait::Sight) => Self::Sight,
+            Some(Wait::Pose) => Self::Pose,
+            Some(Wait::Search) => Self::Search,
+            Some(Wait::Closed) => Self::Closed,
+            Some(Wait::Doubt) => Self::Doubt,
+            Some(Wait::Patrol) => Self::Patrol,
+            Some(Wait::Obstructed) => Self::Obstructed,
+            Some(Wait::Look(_)) => Self::Look,
+        }
+    }
+}
+
 /// What a tick decided.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -531,20 +551,10 @@ impl PlannerAction {
                 told.direction = direction.into();
             }
             Action::Wait => {
-                told.wait = match waiting {
-                    None => PlannerWait::None,
-                    Some(Wait::Sight) => PlannerWait::Sight,
-                    Some(Wait::Pose) => PlannerWait::Pose,
-                    Some(Wait::Search) => PlannerWait::Search,
-                    Some(Wait::Closed) => PlannerWait::Closed,
-                    Some(Wait::Doubt) => PlannerWait::Doubt,
-                    Some(Wait::Patrol) => PlannerWait::Patrol,
-                    Some(Wait::Obstructed) => PlannerWait::Obstructed,
-                    Some(Wait::Look(direction)) => {
-                        told.look = direction.into();
-                        PlannerWait::Look
-                    }
-                };
+                told.wait = waiting.into();
+                if let Some(Wait::Look(direction)) = waiting {
+                    told.look = direction.into();
+                }
             }
             Action::Stop(stop) => {
                 told.kind = PlannerActionKind::Stop;

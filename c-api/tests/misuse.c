@@ -263,6 +263,149 @@ static void maps_are_read(Planner *planner) {
     }
 }
 
+static PlannerVoxelConfig usual_box(void) {
+    return (PlannerVoxelConfig){.id = 1, .width = 9, .depth = 8, .levels = 7, .range = 4, .cell_mm = 500, .bytes_per_tick = 550};
+}
+
+// Every call but create, on memory that holds no planner among voxels.
+static void no_survey_is_created(PlannerVoxelSurvey *survey) {
+    PlannerVoxel at = {4, 4, 3};
+    PlannerVoxelAction action;
+    PlannerVoxelStatus status = {0};
+    uint8_t frame[PLANNER_MAX_FRAME] = {0};
+    size_t length;
+    PlannerResult wanted = PLANNER_RESULT_NOT_CREATED;
+    CHECK(planner_voxel_observe(survey, at, 0, NULL, 0), wanted);
+    CHECK(planner_voxel_tick(survey, &action), wanted);
+    CHECK(planner_voxel_resume(survey), wanted);
+    CHECK(planner_voxel_transmit(survey, frame, &length), wanted);
+    CHECK(planner_voxel_receive(survey, frame, 16), wanted);
+    CHECK(planner_voxel_hear(survey, 2, &status), wanted);
+    CHECK(planner_voxel_status(survey, &status), wanted);
+    CHECK(planner_voxel_state(survey, at, frame), wanted);
+}
+
+// Creates with what cannot be: the memory stays as it is, byte by byte.
+static void boxes_are_refused(PlannerVoxelSurvey *survey) {
+    struct { int width, depth, levels, range, field, cell_mm, wanted; } bad[] = {
+        {0, 8, 7, 4, 0, 500, PLANNER_RESULT_EXTENT},
+        {9, PLANNER_VOXEL_MAX_SIDE + 1, 7, 4, 0, 500, PLANNER_RESULT_EXTENT},
+        {9, 8, PLANNER_VOXEL_MAX_LEVELS + 1, 4, 0, 500, PLANNER_RESULT_EXTENT},
+        {9, 8, 0, 4, 0, 500, PLANNER_RESULT_EXTENT},
+        {9, 8, 7, 4, 0, 0, PLANNER_RESULT_CELL_SIZE},
+        {9, 8, 7, 1, 0, 500, PLANNER_RESULT_RANGE},
+        {9, 8, 7, PLANNER_VOXEL_MAX_RANGE + 1, 0, 500, PLANNER_RESULT_RANGE},
+        {9, 8, 7, 4, PLANNER_VOXEL_FIELD_CUSTOM + 1, 500, PLANNER_RESULT_SENSOR},
+    };
+    PlannerVoxelSurvey *before = malloc(sizeof *before);
+    memcpy(before, survey, sizeof *before);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        PlannerVoxelConfig config = usual_box();
+        config.width = (uint16_t)bad[i].width;
+        config.depth = (uint16_t)bad[i].depth;
+        config.levels = (uint8_t)bad[i].levels;
+        config.range = (uint8_t)bad[i].range;
+        config.field = (uint8_t)bad[i].field;
+        config.cell_mm = (uint16_t)bad[i].cell_mm;
+        CHECK(planner_voxel_create(survey, sizeof *survey, &config), bad[i].wanted);
+    }
+    CHECK(planner_voxel_create(survey, sizeof *survey, NULL), PLANNER_RESULT_NULL);
+    PlannerVoxelConfig config = usual_box();
+    CHECK(planner_voxel_create(survey, sizeof *survey - 8, &config), PLANNER_RESULT_MEMORY);
+    CHECK(memcmp(before, survey, sizeof *before), 0);
+    free(before);
+}
+
+// What a look shows where nothing is but a wall in the east.
+static size_t look_around(PlannerVoxelSeen *seen, PlannerVoxel at) {
+    size_t count = 0;
+    for (int z = -1; z <= 1; z++) {
+        for (int y = -1; y <= 1; y++) {
+            for (int x = -1; x <= 1; x++) {
+                PlannerVoxel voxel = {(int16_t)(at.x + x), (int16_t)(at.y + y), (int16_t)(at.z + z)};
+                seen[count++] = (PlannerVoxelSeen){voxel, (uint8_t)(voxel.x >= 8 ? 200 : 0)};
+            }
+        }
+    }
+    return count;
+}
+
+static void among_voxels(void) {
+    PlannerVoxelSurvey *survey = malloc(sizeof *survey);
+    for (int pattern = 0; pattern < 256; pattern += 5) {
+        memset(survey, pattern, sizeof *survey);
+        no_survey_is_created(survey);
+        boxes_are_refused(survey);
+        no_survey_is_created(survey);
+    }
+    PlannerVoxelConfig config = usual_box();
+    CHECK(planner_voxel_create(survey, sizeof *survey, &config), PLANNER_RESULT_OK);
+    boxes_are_refused(survey);
+    PlannerVoxelSeen *seen = malloc(27 * sizeof *seen);
+    PlannerVoxel at = {4, 4, 3};
+    size_t count = look_around(seen, at);
+    CHECK(planner_voxel_observe(survey, at, 8, seen, count), PLANNER_RESULT_HEADING);
+    CHECK(planner_voxel_observe(survey, at, 255, seen, count), PLANNER_RESULT_HEADING);
+    CHECK(planner_voxel_observe(survey, at, 0, NULL, 1), PLANNER_RESULT_NULL);
+    CHECK(planner_voxel_observe(survey, at, 0, seen, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_voxel_observe(survey, at, 7, seen, count), PLANNER_RESULT_OK);
+    PlannerVoxelAction action;
+    CHECK(planner_voxel_tick(survey, &action), PLANNER_RESULT_OK);
+    // Places outside of the box, and looks from there or of there.
+    static const PlannerVoxel OFF[] = {{INT16_MAX, INT16_MAX, INT16_MAX}, {INT16_MIN, INT16_MIN, INT16_MIN}, {9, 0, 0}, {0, 8, 0}, {0, 0, 7}, {-1, 0, 0}};
+    for (size_t i = 0; i < sizeof OFF / sizeof *OFF; i++) {
+        for (size_t j = 0; j < count; j++) {
+            seen[j].voxel = OFF[i];
+        }
+        CHECK(planner_voxel_observe(survey, OFF[i], 0, seen, count), PLANNER_RESULT_OFF_GRID);
+        CHECK(planner_voxel_tick(survey, &action), PLANNER_RESULT_OK);
+        CHECK(action.wait, PLANNER_WAIT_POSE);
+        CHECK(planner_voxel_observe(survey, at, 0, seen, count), PLANNER_RESULT_OK);
+        CHECK(planner_voxel_tick(survey, &action), PLANNER_RESULT_OK);
+        uint8_t state;
+        CHECK(planner_voxel_state(survey, OFF[i], &state), PLANNER_RESULT_OFF_GRID);
+        PlannerVoxelStatus told = {.position = OFF[i]};
+        CHECK(planner_voxel_hear(survey, 2, &told), PLANNER_RESULT_OFF_GRID);
+        told = (PlannerVoxelStatus){.position = at, .has_goal = 255, .goal = OFF[i]};
+        CHECK(planner_voxel_hear(survey, 2, &told), PLANNER_RESULT_OFF_GRID);
+        told.has_goal = 0;
+        CHECK(planner_voxel_hear(survey, 2, &told), PLANNER_RESULT_OK);
+        CHECK(planner_voxel_hear(survey, 1, &told), PLANNER_RESULT_FRAME_OWN);
+    }
+    // A robot that sees nothing but its neighbours flies until it has enough of it.
+    int steps = 0;
+    for (; steps < 20000; steps++) {
+        count = look_around(seen, at);
+        CHECK(planner_voxel_observe(survey, at, action.heading, seen, count), PLANNER_RESULT_OK);
+        CHECK(planner_voxel_tick(survey, &action), PLANNER_RESULT_OK);
+        if (action.kind == PLANNER_ACTION_KIND_STOP) {
+            break;
+        }
+        at = action.to;
+    }
+    CHECK(action.kind, PLANNER_ACTION_KIND_STOP);
+    uint8_t *frame = malloc(PLANNER_MAX_FRAME);
+    size_t *length = malloc(sizeof *length);
+    CHECK(planner_voxel_transmit(survey, frame, length), PLANNER_RESULT_OK);
+    CHECK(*length > 0, true);
+    CHECK(planner_voxel_receive(survey, frame, *length), PLANNER_RESULT_FRAME_OWN);
+    CHECK(planner_voxel_receive(survey, frame, SIZE_MAX), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_voxel_receive(survey, NULL, 0), PLANNER_RESULT_FRAME_LENGTH);
+    config.id = 2;
+    CHECK(planner_voxel_create(survey, sizeof *survey, &config), PLANNER_RESULT_OK);
+    CHECK(planner_voxel_receive(survey, frame, *length), PLANNER_RESULT_OK);
+    for (size_t cut = 0; cut < *length; cut++) {
+        uint8_t *part = malloc(cut + 1);
+        memcpy(part, frame, cut);
+        CHECK(planner_voxel_receive(survey, part, cut) >= PLANNER_RESULT_FRAME_LENGTH, true);
+        free(part);
+    }
+    free(length);
+    free(frame);
+    free(seen);
+    free(survey);
+}
+
 int main(void) {
     Planner *planner = malloc(sizeof *planner);
     a_failed_create_changes_nothing(planner);
@@ -270,6 +413,7 @@ int main(void) {
     odd_numbers(planner);
     odd_frames(planner);
     maps_are_read(planner);
+    among_voxels();
     // Reasons by number, also those that do not exist.
     for (int stop = 0; stop < 256; stop++) {
         bool is_complete = stop == PLANNER_STOP_COMPLETE || stop == PLANNER_STOP_ENCLOSED

@@ -86,7 +86,8 @@ pub(crate) fn functions(header: &str) -> Vec<&str> {
 }
 
 /// A program in C that does everything wrongly gets answers, on the host and under
-/// sanitizers; the header compiles as C and as C++, and so does the C in docs/porting.md.
+/// sanitizers; the header compiles as C and as C++, and so does the C in the
+/// documents.
 pub(crate) fn misuse_is_answered() -> Result<String> {
     install::host_compiler()?;
     cargo(["build", "-p=c-api"]).run()?;
@@ -113,7 +114,8 @@ pub(crate) fn misuse_is_answered() -> Result<String> {
         .args(["-fsyntax-only", "-x", "c++", HEADER])
         .run()?;
     let shown = folder.join("porting.c");
-    fs::write(&shown, shown_in("docs/porting.md")?)?;
+    let documents = ["docs/porting.md", "docs/features.md"].map(shown_in);
+    fs::write(&shown, documents.into_iter().collect::<Result<String>>()?)?;
     compiler("c11").arg("-fsyntax-only").arg(&shown).run()?;
     Ok(String::new())
 }

@@ -2,9 +2,12 @@
 
 use core::ops::ControlFlow;
 
-use super::VoxelSurvey;
+use super::{SLICE, VoxelSurvey};
 use crate::tile::{TileIndex, bits};
 use crate::volume::{Heading, View, Voxel};
+
+/// Work of a word of which the poses are found.
+const WORD: u32 = 10;
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Number of unknown voxels in sight of `pose` where unknown voxels do not block
@@ -24,6 +27,28 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.finish(pose);
         }
         best
+    }
+
+    /// Spends what a step on the way leaves over on poses anywhere that show nothing any
+    /// more: searches then pass over them.
+    pub(super) fn look_ahead(&mut self) {
+        while self.work < SLICE {
+            let (tile, z) = self.turn;
+            let mut open = self.volume.free(tile, z) & !self.done.word(tile, z) & !self.passed;
+            self.work = self.work.saturating_add(1);
+            if open != 0 {
+                open &= self.volume.poses(tile, z);
+                self.work = self.work.saturating_add(WORD);
+            }
+            if open == 0 {
+                self.passed = 0;
+                self.turn = self.volume.after(tile, z);
+                continue;
+            }
+            let bit = open.trailing_zeros();
+            self.passed |= 1 << bit;
+            self.gain(Voxel::of(tile, z, bit), 1);
+        }
     }
 
     // Not in line: one view at a time is on the stack.

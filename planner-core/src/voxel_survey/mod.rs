@@ -72,6 +72,8 @@ mod news;
 mod rounds;
 mod turn;
 
+use core::borrow::Borrow;
+
 use heapless::Vec;
 
 use crate::cell::{Extent, ExtentError};
@@ -92,9 +94,6 @@ const WAY: usize = 64;
 /// Work after which a step begins no further view: some 160 instructions each on a
 /// Cortex-M4.
 const SLICE: u32 = 43_008;
-
-/// Work of a word of which the poses are found.
-const WORD: u32 = 10;
 
 /// Looks in a row that show nothing at all after which the sensor is taken to have failed.
 const SILENCE: u8 = 100;
@@ -312,7 +311,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// The same where the sensor is turned elsewhere, as long as it has not come round. One
     /// that is turned elsewhere in 16 looks in a row from one place shows nothing there.
-    pub fn observe_towards(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]) {
+    pub fn observe_towards(
+        &mut self,
+        at: Voxel,
+        heading: Heading,
+        seen: impl IntoIterator<Item = impl Borrow<(Voxel, bool)>>,
+    ) {
         let sent_to = self.sent_to.take();
         self.looked = true;
         self.lost = !self.volume.contains(at);
@@ -328,15 +332,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.arrive(at);
         self.closed.clear(at);
-        if seen.is_empty() {
-            self.silent = self.silent.saturating_add(1);
-            return;
-        }
-        if self.silent >= SILENCE {
-            self.stopped = false;
-        }
-        self.silent = 0;
-        for &(voxel, occupied) in seen {
+        let mut is_silent = true;
+        for seen in seen {
+            is_silent = false;
+            let &(voxel, occupied) = seen.borrow();
             // Where the robot is nothing else is.
             let occupied = occupied && voxel != at;
             if self.volume.learn(voxel, occupied)
@@ -345,6 +344,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 self.news.add(tile, z);
             }
         }
+        if is_silent {
+            self.silent = self.silent.saturating_add(1);
+            return;
+        }
+        if self.silent >= SILENCE {
+            self.stopped = false;
+        }
+        self.silent = 0;
         let heading = self.look_towards(heading);
         self.note_missed(heading);
     }
@@ -552,28 +559,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn wait(&mut self, reason: Wait) -> Action<Voxel, Voxel> {
         self.waiting = Maybe::Just(reason);
         Action::Wait
-    }
-
-    /// Spends what a step on the way leaves over on poses anywhere that show nothing any
-    /// more: searches then pass over them.
-    fn look_ahead(&mut self) {
-        while self.work < SLICE {
-            let (tile, z) = self.turn;
-            let mut open = self.volume.free(tile, z) & !self.done.word(tile, z) & !self.passed;
-            self.work = self.work.saturating_add(1);
-            if open != 0 {
-                open &= self.volume.poses(tile, z);
-                self.work = self.work.saturating_add(WORD);
-            }
-            if open == 0 {
-                self.passed = 0;
-                self.turn = self.volume.after(tile, z);
-                continue;
-            }
-            let bit = open.trailing_zeros();
-            self.passed |= 1 << bit;
-            self.gain(Voxel::of(tile, z, bit), 1);
-        }
     }
 
     /// The next step of the way, unless there is none or the goal is done.

@@ -49,7 +49,7 @@ proptest! {
         let mut heading = Heading::new(3);
         for steps in 0.. {
             prop_assert!(steps < 20_000);
-            robot.observe_towards(at, heading, &shown(field, at, heading, &look(&walls, at)));
+            robot.observe_towards(at, heading, shown(field, at, heading, &look(&walls, at)));
             let action = robot.tick();
             prop_assert!(robot.work() <= MOST_WORK + VIEW, "{}", robot.work());
             heading = heading.turned(robot.heading(), turn);
@@ -88,7 +88,7 @@ proptest! {
         let heading = Heading::new(eighths);
         for steps in 0.. {
             prop_assert!(steps < 100_000);
-            robot.observe_towards(at, heading, &shown(field, at, heading, &look(&walls, at)));
+            robot.observe_towards(at, heading, shown(field, at, heading, &look(&walls, at)));
             match robot.tick() {
                 Action::Move(to) => at = to,
                 Action::Wait => {}

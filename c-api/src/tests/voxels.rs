@@ -1,0 +1,472 @@
+//! The planner among voxels.
+
+use planner_core::radio::LinkConfig;
+use planner_core::volume::{Field, Heading, Voxel, in_sight};
+use planner_core::voxel_survey::{self, VoxelSurvey};
+
+use super::*;
+
+const OK: PlannerResult = PlannerResult::Ok;
+const BYTES: usize = size_of::<PlannerVoxelSurvey>();
+
+const BOX: PlannerVoxelConfig = PlannerVoxelConfig {
+    id: 1,
+    width: 6,
+    depth: 5,
+    levels: 4,
+    range: 3,
+    field: PlannerVoxelField::AllRound as u8,
+    up: 0,
+    down: 0,
+    side: 0,
+    near: 0,
+    cell_mm: 500,
+    origin_x_mm: 0,
+    origin_y_mm: 0,
+    bytes_per_tick: 550,
+    is_keyed: 0,
+    key: [0; 16],
+};
+
+const START: Voxel = Voxel::new(1, 1, 1);
+/// A post from the floor to the ceiling.
+const POST: (i16, i16) = (4, 3);
+
+/// An action to be overwritten.
+const UNTOLD: PlannerVoxelAction = PlannerVoxelAction {
+    kind: PlannerActionKind::Wait,
+    to: PlannerVoxel { x: 9, y: 9, z: 9 },
+    heading: 9,
+    wait: PlannerWait::None,
+    stop: PlannerStop::None,
+    frontiers: 9,
+    at: PlannerVoxel { x: 9, y: 9, z: 9 },
+};
+
+/// A status to be overwritten.
+const UNASKED: PlannerVoxelStatus = PlannerVoxelStatus {
+    position: UNTOLD.at,
+    goal: UNTOLD.at,
+    has_goal: 9,
+    has_stopped: 9,
+    is_mute: 9,
+    known: 9,
+    frontiers: 9,
+    heard_voxels: 9,
+    same_id: 9,
+    refused: 9,
+};
+
+fn room() -> Box<[u64]> {
+    vec![0; PLANNER_VOXEL_SURVEY_WORDS].into()
+}
+
+fn place(memory: &mut [u64]) -> *mut PlannerVoxelSurvey {
+    memory.as_mut_ptr().cast()
+}
+
+fn ready(memory: &mut [u64], config: PlannerVoxelConfig) -> *mut PlannerVoxelSurvey {
+    let survey = place(memory);
+    assert_eq!(planner_voxel_create(survey, BYTES, &config), OK);
+    survey
+}
+
+/// What a sensor at `eye` that is turned to `heading` shows of the box with its post.
+fn view(field: Field, eye: Voxel, heading: Heading) -> Vec<(Voxel, bool)> {
+    let is_post = |at: Voxel| (at.x, at.y) == POST;
+    let levels = 0..BOX.levels as i16;
+    let all = levels.flat_map(|z| (0..30).map(move |i| Voxel::new(i % 6, i / 6, z)));
+    all.filter(|&it| eye.distance_squared(it) <= u32::from(BOX.range * BOX.range))
+        .filter(|&it| in_sight(eye, it, |at| !is_post(at)) && field.shows(eye, heading, it))
+        .map(|it| (it, is_post(it)))
+        .collect()
+}
+
+fn observe(
+    survey: *mut PlannerVoxelSurvey,
+    at: Voxel,
+    heading: Heading,
+    view: &[(Voxel, bool)],
+) -> PlannerResult {
+    let seen = |&(voxel, occupied): &(Voxel, bool)| PlannerVoxelSeen {
+        voxel: voxel.into(),
+        occupied: u8::from(occupied) * 7,
+    };
+    let seen: Vec<_> = view.iter().map(seen).collect();
+    planner_voxel_observe(
+        survey,
+        at.into(),
+        heading.eighths(),
+        seen.as_ptr(),
+        seen.len(),
+    )
+}
+
+fn decide(survey: *mut PlannerVoxelSurvey) -> PlannerVoxelAction {
+    let mut action = UNTOLD;
+    assert_eq!(planner_voxel_tick(survey, &mut action), OK);
+    action
+}
+
+fn told(survey: *mut PlannerVoxelSurvey) -> PlannerVoxelStatus {
+    let mut status = UNASKED;
+    assert_eq!(planner_voxel_status(survey, &mut status), OK);
+    status
+}
+
+/// The frames of one tick.
+fn frames(survey: *mut PlannerVoxelSurvey) -> Vec<Vec<u8>> {
+    let mut frames = Vec::new();
+    loop {
+        let (mut frame, mut length) = ([0xa5; PLANNER_MAX_FRAME], 9);
+        let result = planner_voxel_transmit(survey, frame.as_mut_ptr(), &mut length);
+        assert_eq!(result, OK);
+        if length == 0 {
+            return frames;
+        }
+        frames.push(frame[..length].to_vec());
+    }
+}
+
+/// The same planner in Rust.
+fn twin(field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
+    let link = LinkConfig {
+        origin_mm: (BOX.origin_x_mm, BOX.origin_y_mm),
+        cell_mm: BOX.cell_mm,
+        bytes_per_tick: BOX.bytes_per_tick,
+        key: None,
+    };
+    let config = voxel_survey::Config {
+        range: BOX.range,
+        field,
+        link,
+    };
+    let mut twin = Box::new(VoxelSurvey::vacant());
+    let extent = Extent::new(BOX.width, BOX.depth);
+    twin.reset(config, RobotId(BOX.id), extent, BOX.levels)
+        .unwrap();
+    twin
+}
+
+/// Flies until the stop, and decides each time as the same planner in Rust.
+fn survey_box(config: PlannerVoxelConfig, field: Field) -> *mut PlannerVoxelSurvey {
+    let survey = ready(Box::leak(room()), config);
+    let mut twin = twin(field);
+    let (mut at, mut heading) = (START, Heading::EAST);
+    for _ in 0..2000 {
+        let view = view(field, at, heading);
+        assert_eq!(observe(survey, at, heading, &view), OK);
+        twin.observe_towards(at, heading, &view);
+        let action = decide(survey);
+        let wanted = twin.tick();
+        heading = Heading::new(action.heading);
+        assert_eq!(heading, twin.heading());
+        assert_eq!(action.wait, PlannerWait::from(twin.waiting()));
+        let mut buffer = [0; PLANNER_MAX_FRAME];
+        for frame in frames(survey) {
+            assert_eq!(twin.transmit(&mut buffer), Some(frame.len()));
+            assert_eq!(buffer[..frame.len()], frame);
+        }
+        match wanted {
+            Action::Move(to) => {
+                assert_eq!(action.kind, PlannerActionKind::Move);
+                assert_eq!(action.to, to.into());
+                at = to;
+            }
+            Action::Wait => assert_eq!(action.kind, PlannerActionKind::Wait),
+            Action::Stop(stop) => {
+                assert_eq!(action.kind, PlannerActionKind::Stop);
+                assert_eq!(action.stop, stop.reason().into());
+                return survey;
+            }
+        }
+    }
+    panic!("it does not stop");
+}
+
+#[test]
+fn a_box_is_surveyed_as_in_rust() {
+    let kinds = [
+        (PlannerVoxelField::AllRound, Field::ALL_ROUND),
+        (PlannerVoxelField::Downward, Field::DOWNWARD),
+        (PlannerVoxelField::Lidar, Field::LIDAR),
+        (PlannerVoxelField::Camera, Field::CAMERA),
+        (
+            PlannerVoxelField::Custom,
+            Field {
+                up: 60,
+                down: 148,
+                side: Some(110),
+                near: 2,
+            },
+        ),
+        (
+            PlannerVoxelField::Custom,
+            Field {
+                side: None,
+                near: 3,
+                ..Field::LIDAR
+            },
+        ),
+    ];
+    for (kind, field) in kinds {
+        let config = PlannerVoxelConfig {
+            field: kind as u8,
+            up: field.up,
+            down: field.down,
+            side: field.side.unwrap_or(0),
+            near: field.near,
+            ..BOX
+        };
+        let survey = survey_box(config, field);
+        let now = told(survey);
+        assert_eq!((now.has_stopped, now.has_goal, now.is_mute), (1, 0, 0));
+        assert_eq!((now.heard_voxels, now.frontiers > 0), (0, now.known < 120));
+        if kind == PlannerVoxelField::AllRound {
+            assert_eq!(now.known, 120);
+        }
+        let mut state = 9;
+        for (x, y, wanted) in [(4, 3, PlannerState::Obstacle), (1, 1, PlannerState::Free)] {
+            let voxel = PlannerVoxel { x, y, z: 1 };
+            assert_eq!(planner_voxel_state(survey, voxel, &mut state), OK);
+            assert_eq!(state, wanted as u8);
+        }
+        assert_eq!(planner_voxel_resume(survey), OK);
+        assert_eq!(told(survey).has_stopped, 0);
+    }
+}
+
+#[test]
+fn a_voxel_has_a_state() {
+    let mut memory = room();
+    let survey = ready(&mut memory, BOX);
+    let ahead = Voxel::new(2, 1, 1);
+    assert_eq!(
+        observe(
+            survey,
+            START,
+            Heading::EAST,
+            &[(START, false), (ahead, true)]
+        ),
+        OK
+    );
+    let mut state = 9;
+    for (voxel, wanted) in [
+        (START, PlannerState::Frontier),
+        (ahead, PlannerState::Obstacle),
+        (Voxel::new(3, 1, 1), PlannerState::Unknown),
+    ] {
+        assert_eq!(planner_voxel_state(survey, voxel.into(), &mut state), OK);
+        assert_eq!(state, wanted as u8);
+    }
+    for off in [
+        Voxel::new(6, 0, 0),
+        Voxel::new(0, 5, 0),
+        Voxel::new(0, 0, 4),
+    ] {
+        let result = planner_voxel_state(survey, off.into(), &mut state);
+        assert_eq!(result, PlannerResult::OffGrid);
+    }
+}
+
+#[test]
+fn robots_among_voxels_hear_each_other() {
+    let mut memories = [room(), room(), room()];
+    let [one, two, mute] = &mut memories;
+    let one = ready(one, BOX);
+    let two = ready(two, PlannerVoxelConfig { id: 2, ..BOX });
+    let mute = ready(
+        mute,
+        PlannerVoxelConfig {
+            id: 3,
+            bytes_per_tick: 0,
+            ..BOX
+        },
+    );
+    let view = view(Field::ALL_ROUND, START, Heading::EAST);
+    for robot in [one, mute] {
+        assert_eq!(observe(robot, START, Heading::EAST, &view), OK);
+        decide(robot);
+    }
+    assert_eq!((told(mute).is_mute, frames(mute).len()), (1, 0));
+    let sent = frames(one);
+    assert!(!sent.is_empty());
+    let receive = |by, frame: &[u8]| planner_voxel_receive(by, frame.as_ptr(), frame.len());
+    for frame in &sent {
+        assert_eq!(receive(two, frame), OK);
+        assert_eq!(receive(one, frame), PlannerResult::FrameOwn);
+        assert_eq!(receive(two, &frame[1..]), PlannerResult::FrameVersion);
+    }
+    let now = told(two);
+    assert!(
+        now.heard_voxels > 0 && now.known >= now.heard_voxels,
+        "{now:?}"
+    );
+    assert_eq!(receive(two, &[]), PlannerResult::FrameLength);
+    // Two planners on the ground and in the air do not read each other's frames.
+    let mut memory = memory();
+    let ground = created(&mut memory, CONFIG);
+    let frame = sent.first().unwrap();
+    let result = planner_receive(ground, frame.as_ptr(), frame.len());
+    assert!(
+        result as u8 >= PlannerResult::FrameLength as u8,
+        "{result:?}"
+    );
+
+    assert_eq!(planner_voxel_hear(two, 1, &told(one)), OK);
+    assert_eq!(
+        planner_voxel_hear(two, 2, &told(one)),
+        PlannerResult::FrameOwn
+    );
+    let far = PlannerVoxel { x: 6, y: 0, z: 0 };
+    let lost = PlannerVoxelStatus {
+        position: far,
+        ..told(one)
+    };
+    assert_eq!(planner_voxel_hear(two, 1, &lost), PlannerResult::OffGrid);
+    let misled = PlannerVoxelStatus {
+        goal: far,
+        has_goal: 1,
+        ..told(one)
+    };
+    assert_eq!(planner_voxel_hear(two, 1, &misled), PlannerResult::OffGrid);
+    let at_rest = PlannerVoxelStatus {
+        has_goal: 0,
+        ..misled
+    };
+    assert_eq!(planner_voxel_hear(two, 1, &at_rest), OK);
+}
+
+#[test]
+fn what_a_survey_cannot_be_is_answered_and_changes_nothing() {
+    let mut memory: Box<[u64]> = vec![0x0123_4567_89ab_cdef; PLANNER_VOXEL_SURVEY_WORDS].into();
+    let before = memory.clone();
+    let survey = place(&mut memory);
+    let bad = [
+        (
+            PlannerVoxelConfig { width: 0, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { width: 41, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { depth: 0, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { depth: 41, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { levels: 0, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { levels: 17, ..BOX },
+            PlannerResult::Extent,
+        ),
+        (
+            PlannerVoxelConfig { cell_mm: 0, ..BOX },
+            PlannerResult::CellSize,
+        ),
+        (PlannerVoxelConfig { range: 1, ..BOX }, PlannerResult::Range),
+        (
+            PlannerVoxelConfig { range: 13, ..BOX },
+            PlannerResult::Range,
+        ),
+        (
+            PlannerVoxelConfig { field: 5, ..BOX },
+            PlannerResult::Sensor,
+        ),
+    ];
+    for (config, wanted) in bad {
+        let result = planner_voxel_create(survey, BYTES, &config);
+        assert_eq!(result, wanted, "{config:?}");
+    }
+    for size in [BYTES - 8, BYTES + 8] {
+        let result = planner_voxel_create(survey, size, &BOX);
+        assert_eq!(result, PlannerResult::Memory);
+    }
+    assert_eq!(
+        planner_voxel_create(survey, BYTES, null()),
+        PlannerResult::Null
+    );
+    let crooked = survey.wrapping_byte_add(1);
+    assert_eq!(
+        planner_voxel_create(crooked, BYTES, &BOX),
+        PlannerResult::Misaligned
+    );
+    assert_eq!(planner_voxel_resume(survey), PlannerResult::NotCreated);
+    assert!(memory == before);
+    let largest = PlannerVoxelConfig {
+        width: 40,
+        depth: 40,
+        levels: 16,
+        range: 12,
+        ..BOX
+    };
+    ready(&mut memory, largest);
+}
+
+#[test]
+fn calls_without_a_survey_are_answered() {
+    let mut memory = room();
+    let survey = place(&mut memory);
+    let (mut action, mut status, mut frame, mut length) = (UNTOLD, UNASKED, [0; 55], 9);
+    let at = PlannerVoxel::from(START);
+    let mut all = |survey| {
+        [
+            planner_voxel_observe(survey, at, 0, null(), 0),
+            planner_voxel_tick(survey, &mut action),
+            planner_voxel_resume(survey),
+            planner_voxel_transmit(survey, frame.as_mut_ptr(), &mut length),
+            planner_voxel_receive(survey, frame.as_ptr(), 16),
+            planner_voxel_hear(survey, 2, &UNASKED),
+            planner_voxel_status(survey, &mut status),
+            planner_voxel_state(survey, at, frame.as_mut_ptr()),
+        ]
+    };
+    assert_eq!(all(survey), [PlannerResult::NotCreated; 8]);
+    assert_eq!(all(null_mut()), [PlannerResult::Null; 8]);
+    assert_eq!(
+        all(survey.wrapping_byte_add(1)),
+        [PlannerResult::Misaligned; 8]
+    );
+    // A planner on the ground is none among voxels.
+    assert!(size_of::<Planner>() >= BYTES);
+    let mut ground = super::memory();
+    let planner = created(&mut ground, CONFIG);
+    assert_eq!(all(planner.cast()), [PlannerResult::NotCreated; 8]);
+
+    let survey = ready(&mut memory, BOX);
+    let mut places = [0u64; 8];
+    let crooked = places.as_mut_ptr().wrapping_byte_add(1);
+    for (pointer, wanted) in [
+        (null_mut(), PlannerResult::Null),
+        (crooked, PlannerResult::Misaligned),
+    ] {
+        for result in [
+            planner_voxel_observe(survey, at, 0, pointer.cast(), 1),
+            planner_voxel_tick(survey, pointer.cast()),
+            planner_voxel_transmit(survey, frame.as_mut_ptr(), pointer.cast()),
+            planner_voxel_hear(survey, 2, pointer.cast()),
+            planner_voxel_status(survey, pointer.cast()),
+        ] {
+            assert_eq!(result, wanted);
+        }
+    }
+    assert_eq!(
+        planner_voxel_observe(survey, at, 8, null(), 0),
+        PlannerResult::Heading
+    );
+    let off = PlannerVoxel { z: 4, ..at };
+    assert_eq!(
+        planner_voxel_observe(survey, off, 7, null(), 0),
+        PlannerResult::OffGrid
+    );
+    assert_eq!(decide(survey).wait, PlannerWait::Pose);
+    assert_eq!(planner_voxel_observe(survey, at, 7, null(), 0), OK);
+    assert_eq!(decide(survey).wait, PlannerWait::Sight);
+}

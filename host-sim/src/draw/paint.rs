@@ -26,6 +26,7 @@ pub(super) enum Ground {
 }
 
 impl Ground {
+    #[cfg(not(target_arch = "wasm32"))]
     pub(super) const ALL: [Self; 8] = [
         Self::Free,
         Self::Obstacle,
@@ -83,6 +84,7 @@ pub(super) fn robot_color(robot: usize) -> RGBColor {
 }
 
 /// The colour of a line in a chart: those of robots, and a gray.
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) fn series_color(series: usize) -> RGBColor {
     const GRAY: RGBColor = RGBColor(136, 136, 136);
     let colors = ROBOTS.iter().chain([&GRAY]);
@@ -98,6 +100,7 @@ pub(super) fn pale(RGBColor(red, green, blue): RGBColor) -> Rgb<u8> {
 }
 
 /// Robots with a colour of their own.
+#[cfg(not(target_arch = "wasm32"))]
 pub(super) const ROBOT_COLORS: usize = ROBOTS.len();
 
 /// The same on dark ground, with the yellow and without the black.

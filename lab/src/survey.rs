@@ -4,13 +4,14 @@ mod eye;
 mod flight;
 mod heights;
 mod setup;
+mod sight;
 mod voxels;
 
 use egui::{Pos2, Sense, Shape, Stroke, Ui};
 use host_sim::draw::write_png;
 use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
-use planner_core::Point;
+use planner_core::{Point, RobotId};
 
 use crate::colors::{Colors, mix};
 use crate::playback::{Export, Playback, Verdict};
@@ -162,6 +163,9 @@ impl SurveyScene {
         if self.layers.ceiling && self.levels().is_none() {
             painter.add(self.ceiling(&eye, &colors));
         }
+        if self.layers.sensor {
+            painter.extend(self.sensors(&eye, &colors, selected));
+        }
         painter.extend(self.drones(&eye, &colors, selected));
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "terrain"));
         let at = response.clicked().then(|| response.interact_pointer_pos());
@@ -190,8 +194,37 @@ impl SurveyScene {
         Shape::closed_line(corners, Stroke::new(1.5, colors.lost))
     }
 
+    /// What the selected drone's sensor has in its field; faintly, what all have.
+    fn sensors(&self, eye: &Eye, colors: &Colors, selected: Option<usize>) -> Vec<Shape> {
+        let (ways, headings) = (
+            self.flight.ways(self.shown),
+            self.flight.headings(self.shown),
+        );
+        let (sight, faults) = (self.flight.sight(), &self.setup.conditions.faults);
+        let is_meant = |drone: usize| {
+            let id = RobotId(drone.min(255) as u8);
+            selected.is_none_or(|selected| selected == drone) && faults.is_alive(id, self.shown())
+        };
+        let strength = if selected.is_some() { 0.9 } else { 0.4 };
+        let mut shapes = Vec::new();
+        for (drone, way) in ways
+            .iter()
+            .enumerate()
+            .filter(|&(drone, _)| is_meant(drone))
+        {
+            let Some(&at) = way.last() else { continue };
+            let heading = headings.get(drone).copied().unwrap_or_default();
+            let color = colors.robot(drone).gamma_multiply(strength);
+            shapes.extend(sight.outline(eye, (at, heading), color));
+        }
+        shapes
+    }
+
     fn drones(&self, eye: &Eye, colors: &Colors, selected: Option<usize>) -> Vec<Shape> {
-        let ways = self.flight.ways(self.shown);
+        let (ways, headings) = (
+            self.flight.ways(self.shown),
+            self.flight.headings(self.shown),
+        );
         let mut shapes = Vec::new();
         let color = |robot| match selected {
             Some(selected) if selected != robot => mix(colors.free, colors.robot(robot), 0.4),
@@ -207,6 +240,10 @@ impl SurveyScene {
             let foot = eye.project(at.x, at.y, self.flight.beneath(at));
             let plumb = Stroke::new(1.0, mix(colors.free, colors.ink, 0.6));
             shapes.extend(Shape::dashed_line(&[middle, foot], plumb, 3.0, 3.0));
+            if let Some(&heading) = headings.get(robot) {
+                let edge = Stroke::new(1.0, colors.ink);
+                shapes.push(sight::beak(eye, (at, heading), color(robot), edge));
+            }
             shapes.push(Shape::circle_filled(middle, 6.0, colors.ink));
             shapes.push(Shape::circle_filled(middle, 5.0, color(robot)));
         }
@@ -285,7 +322,7 @@ mod tests {
     use host_sim::run::{heights, voxels};
     use host_sim::terrain::TerrainSource;
 
-    use super::setup::tests::{town, unusual};
+    use super::setup::tests::{compared, filmed, town, unusual};
     use super::*;
 
     fn flown(setup: SurveySetup) -> SurveyScene {
@@ -305,7 +342,7 @@ mod tests {
             size: 24,
             ..SurveySetup::default()
         };
-        for setup in [hills, unusual(), town()] {
+        for setup in [hills, unusual(), town(), filmed(), compared()] {
             let scene = flown(setup.clone());
             let digest = match setup.terrain.scene(setup.size) {
                 Some(scene) => voxels::run(&scene, &setup.voxel_scenario())
@@ -324,7 +361,7 @@ mod tests {
 
     #[test]
     fn every_step_can_be_gone_back_to() {
-        for setup in [unusual(), town()] {
+        for setup in [unusual(), filmed()] {
             let mut scene = flown(setup.clone());
             let mut ahead = SurveyScene::new(setup).unwrap();
             for step in 0..scene.ticks() {
@@ -333,6 +370,11 @@ mod tests {
                 assert_eq!(seen(&scene), seen(&ahead));
                 let steps = step as usize;
                 assert_eq!(scene.flight.ways(steps), ahead.flight.ways(steps));
+                let headings = ahead.flight.headings(steps);
+                assert_eq!(scene.flight.headings(steps), headings);
+                let drones = usize::from(scene.setup.robots);
+                let is_turned = scene.flight.sight().field.side.is_some();
+                assert_eq!(headings.len(), if is_turned { drones } else { 0 });
                 assert!(ahead.tick());
             }
             assert!(!ahead.tick());
@@ -341,7 +383,7 @@ mod tests {
 
     #[test]
     fn a_saved_trace_shows_what_was_flown() {
-        for setup in [unusual(), town()] {
+        for setup in [unusual(), town(), filmed(), compared()] {
             let flown = flown(setup.clone());
             let (_, file) = flown.export(Export::Trace).unwrap();
             let mut replay = match setup.terrain {
@@ -361,7 +403,23 @@ mod tests {
             assert_eq!(replay.shown(), flown.ticks());
             let last = flown.ticks() as usize;
             assert_eq!(replay.flight.ways(last), flown.flight.ways(last));
+            assert_eq!(replay.flight.headings(last), flown.flight.headings(last));
             assert_eq!(replay.export(Export::Trace).unwrap().1, file);
         }
+    }
+
+    /// The command says in a trace where the drones start in a town: where they would anyway.
+    #[test]
+    fn a_town_flown_by_the_command_is_flown_again() {
+        let setup = filmed();
+        let scene = setup.terrain.scene(setup.size).unwrap();
+        let mut scenario = setup.voxel_scenario();
+        scenario.start = scene.start();
+        let trace = voxels::run(&scene, &scenario).unwrap();
+        let digest = trace.digest();
+        let replay = SurveyScene::replay_voxels(trace);
+        assert_eq!(replay.setup, setup);
+        assert!(replay.is_repeatable());
+        assert_eq!(flown(setup).digest(), Some(digest));
     }
 }

@@ -28,10 +28,23 @@ pub struct Fov {
     height: u16,
 }
 
-/// Degrees that an image can be wide: eight headings go round with the least.
-const WIDTHS: RangeInclusive<u16> = 45..=170;
-/// The same high.
-const HEIGHTS: RangeInclusive<u16> = 1..=170;
+impl Fov {
+    /// Degrees that an image can be wide: eight headings go round with the least.
+    pub const WIDTHS: RangeInclusive<u16> = 45..=170;
+    /// The same high.
+    pub const HEIGHTS: RangeInclusive<u16> = 1..=170;
+
+    /// An image so many degrees wide and high, if it can be.
+    pub fn new(width: u16, height: u16) -> Option<Self> {
+        let fits = Self::WIDTHS.contains(&width) && Self::HEIGHTS.contains(&height);
+        fits.then_some(Self { width, height })
+    }
+
+    /// Degrees that it is wide and high.
+    pub const fn degrees(self) -> (u16, u16) {
+        (self.width, self.height)
+    }
+}
 
 impl Default for Fov {
     fn default() -> Self {
@@ -47,18 +60,15 @@ impl FromStr for Fov {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('x');
-        let numbers = numbers.and_then(|(width, height)| {
-            let (width, height) = (width.parse().ok()?, height.parse().ok()?);
-            let fits = WIDTHS.contains(&width) && HEIGHTS.contains(&height);
-            fits.then_some(Self { width, height })
-        });
+        let numbers = numbers
+            .and_then(|(width, height)| Self::new(width.parse().ok()?, height.parse().ok()?));
         numbers.ok_or_else(|| {
             format!(
                 "expected WIDTHxHEIGHT in whole degrees, {} to {} and {} to {}",
-                WIDTHS.start(),
-                WIDTHS.end(),
-                HEIGHTS.start(),
-                HEIGHTS.end()
+                Self::WIDTHS.start(),
+                Self::WIDTHS.end(),
+                Self::HEIGHTS.start(),
+                Self::HEIGHTS.end()
             )
         })
     }
@@ -91,20 +101,35 @@ impl Sensor {
         }
     }
 
+    /// The sensor with this field, and a camera's image; `None`: none of these has it.
+    pub fn of(field: Field) -> Option<(Self, Fov)> {
+        let degrees = |half: u16| (f64::from(half) / 256.0).atan().to_degrees() * 2.0;
+        let fov = field.side.and_then(|side| {
+            Fov::new(
+                degrees(side).round() as u16,
+                degrees(field.up).round() as u16,
+            )
+        });
+        let fov = fov.unwrap_or_default();
+        let all = Self::value_variants().iter();
+        let sensor = all.copied().find(|sensor| sensor.field(fov) == field)?;
+        Some((sensor, fov))
+    }
+
     /// What a summary says of a field.
     pub(crate) fn name_of(field: Field) -> String {
-        let degrees = |half: u16| (f64::from(half) / 256.0).atan().to_degrees() * 2.0;
-        match field {
-            Field::ALL_ROUND => "all-round".into(),
-            Field::DOWNWARD => "downward".into(),
-            Field::LIDAR => "lidar".into(),
-            Field {
-                side: Some(side),
-                up,
-                ..
-            } => format!("camera {:.0}x{:.0}", degrees(side), degrees(up)),
-            _ => "other".into(),
+        match Self::of(field) {
+            Some((Self::Camera, fov)) => format!("camera {fov}"),
+            Some((sensor, _)) => sensor.to_string(),
+            None => "other".into(),
         }
+    }
+}
+
+impl fmt::Display for Sensor {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = self.to_possible_value().expect("no value is skipped");
+        f.write_str(value.get_name())
     }
 }
 
@@ -174,10 +199,21 @@ mod tests {
         let camera = |text: &str| Sensor::Camera.field(text.parse().unwrap());
         assert_eq!(camera("90x60"), Field::CAMERA);
         assert_eq!(Fov::default().to_string(), "90x60");
-        for degrees in WIDTHS {
-            let name = Sensor::name_of(camera(&format!("{degrees}x58")));
-            assert_eq!(name, format!("camera {degrees}x58"));
+        for (width, height) in Fov::WIDTHS.zip(Fov::HEIGHTS.cycle()).chain([(90, 170)]) {
+            let fov = Fov::new(width, height).unwrap();
+            let field = Sensor::Camera.field(fov);
+            assert_eq!(Sensor::of(field), Some((Sensor::Camera, fov)));
+            assert_eq!(Sensor::name_of(field), format!("camera {width}x{height}"));
         }
+        for sensor in [Sensor::AllRound, Sensor::Downward, Sensor::Lidar] {
+            let fov = Fov::default();
+            assert_eq!(Sensor::of(sensor.field(fov)), Some((sensor, fov)));
+        }
+        let blind = Field {
+            near: 9,
+            ..Field::LIDAR
+        };
+        assert_eq!(Sensor::of(blind), None);
         for text in [
             "", "90", "90x", "44x60", "90x0", "171x60", "90x171", "90x60x2",
         ] {

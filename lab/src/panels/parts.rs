@@ -1,7 +1,10 @@
 //! Parts of the menus of all worlds.
 
+use std::ops::RangeInclusive;
+
 use clap::ValueEnum;
-use egui::{ComboBox, DragValue, RichText, Slider, TextEdit, Ui};
+use egui::emath::Numeric;
+use egui::{ComboBox, DragValue, RichText, Slider, SliderClamping, TextEdit, Ui};
 use host_sim::scenario::{Conditions, Faults, MediumKind};
 
 use crate::platform::{Inbox, choose_file};
@@ -16,6 +19,12 @@ pub(super) fn title(ui: &mut Ui, text: &str) {
 pub(super) fn number(ui: &mut Ui, name: &str, value: DragValue<'_>) {
     let label = ui.label(name);
     ui.add(value).labelled_by(label.id);
+}
+
+/// A number that the user keeps within a range; one that comes otherwise stays.
+pub(super) fn slider<T: Numeric>(ui: &mut Ui, name: &str, value: &mut T, range: RangeInclusive<T>) {
+    let slider = Slider::new(value, range).clamping(SliderClamping::Edits);
+    ui.add(slider.text(name));
 }
 
 /// One of several.

@@ -5,9 +5,11 @@ use std::mem::discriminant;
 use clap::ValueEnum;
 use egui::{DragValue, RichText, Slider, Ui};
 use host_sim::scenario::heights::Planner;
+use host_sim::scenario::voxels;
+use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
-use super::parts::{choice, events, files, medium, number, title};
+use super::parts::{choice, events, files, medium, number, slider, title};
 use crate::app::App;
 use crate::survey::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
 use crate::view::Tool;
@@ -22,14 +24,19 @@ impl App {
         terrain(ui, &mut setup);
         files(ui, &self.inbox, &mut self.path);
         title(ui, "Drones");
-        ui.add(Slider::new(&mut setup.robots, ROBOTS).text("drones"));
-        if !setup.is_of_voxels() {
-            choice(ui, "planner", &mut setup.planner, Planner::value_variants());
+        slider(ui, "drones", &mut setup.robots, ROBOTS);
+        match setup.is_of_voxels() {
+            true => {
+                let all = voxels::Planner::value_variants();
+                choice(ui, "planner", &mut setup.voxel_planner, all);
+            }
+            false => choice(ui, "planner", &mut setup.planner, Planner::value_variants()),
         }
-        ui.add(Slider::new(&mut setup.range, RANGES).text("sensor range"));
+        sensor(ui, &mut setup);
+        slider(ui, "sensor range", &mut setup.range, RANGES);
         if !setup.is_of_voxels() {
-            ui.add(Slider::new(&mut setup.min_altitude, ALTITUDES).text("least altitude"));
-            ui.add(Slider::new(&mut setup.ceiling, CEILINGS).text("ceiling"));
+            slider(ui, "least altitude", &mut setup.min_altitude, ALTITUDES);
+            slider(ui, "ceiling", &mut setup.ceiling, CEILINGS);
         }
         ui.horizontal(|ui| {
             number(
@@ -45,6 +52,7 @@ impl App {
         let levels = survey.levels();
         let layers = &mut survey.layers;
         ui.checkbox(&mut layers.hidden, "ground that was not seen");
+        ui.checkbox(&mut layers.sensor, "sensor");
         match levels {
             None => {
                 ui.checkbox(&mut layers.ceiling, "ceiling");
@@ -68,11 +76,26 @@ impl App {
             _ => "Click a drone; drag to turn, scroll to zoom.",
         };
         ui.label(RichText::new(hint).weak());
+        let setup = setup.tidied();
         if setup != survey.setup {
             self.fly(setup);
         }
         title(ui, "Export");
         self.exports(ui);
+    }
+}
+
+/// What the drones see, if there is a choice.
+fn sensor(ui: &mut Ui, setup: &mut SurveySetup) {
+    if !setup.has_sensors() {
+        return;
+    }
+    choice(ui, "sensor", &mut setup.sensor, Sensor::value_variants());
+    if setup.sensor == Sensor::Camera {
+        let (mut width, mut height) = setup.fov.degrees();
+        slider(ui, "degrees wide", &mut width, Fov::WIDTHS);
+        slider(ui, "degrees high", &mut height, Fov::HEIGHTS);
+        setup.fov = Fov::new(width, height).unwrap_or(setup.fov);
     }
 }
 
@@ -106,6 +129,7 @@ fn terrain(ui: &mut Ui, setup: &mut SurveySetup) {
         setup.terrain = places[index].0(seed);
     }
     let sizes = setup.sizes();
-    setup.size = setup.size.min(*sizes.end());
-    ui.add(Slider::new(&mut setup.size, sizes).text("columns a side"));
+    if setup.is_drawn() {
+        slider(ui, "columns a side", &mut setup.size, sizes);
+    }
 }

@@ -54,6 +54,11 @@ impl Eye {
         self.project(point.x, point.y, point.z)
     }
 
+    /// Points a cell, for what does not lean away.
+    pub(super) fn scale(&self) -> f32 {
+        self.scale
+    }
+
     pub(super) fn east_is_near(&self) -> bool {
         self.sine > 0.0
     }

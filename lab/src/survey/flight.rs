@@ -5,11 +5,13 @@ use host_sim::record::{Deed, Kind, Record};
 use host_sim::scenario::Faults;
 use host_sim::scene::octree::OcTree;
 use image::RgbImage;
+use planner_core::volume::Heading;
 use planner_core::{Extent, Point, RobotId};
 
 use super::SurveySetup;
 use super::eye::Eye;
 use super::heights::Heights;
+use super::sight::Sight;
 use super::voxels::Voxels;
 use crate::colors::{Colors, mix};
 use crate::decisions::stop;
@@ -21,6 +23,9 @@ pub struct Layers {
     pub hidden: bool,
     /// The greatest height.
     pub ceiling: bool,
+    /// What the selected drone's sensor has in its field; faintly that of all, if none is
+    /// selected.
+    pub sensor: bool,
     /// Of voxels only so many levels from below: to look into rooms.
     pub levels: u8,
 }
@@ -30,6 +35,7 @@ impl Default for Layers {
         Self {
             hidden: true,
             ceiling: false,
+            sensor: true,
             levels: u8::MAX,
         }
     }
@@ -66,6 +72,12 @@ pub(super) trait Flight {
 
     /// The way of each drone in the first so many steps.
     fn ways(&self, steps: usize) -> Vec<Vec<Point>>;
+
+    /// What its sensor shows, of each drone.
+    fn sight(&self) -> Sight;
+
+    /// Where each drone's sensor is turned after so many steps, if it has sides.
+    fn headings(&self, steps: usize) -> Vec<Heading>;
 
     /// The height of what lies beneath a drone.
     fn beneath(&self, at: Point) -> f32;

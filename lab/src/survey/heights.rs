@@ -9,11 +9,13 @@ use host_sim::run::heights::{self, Stepping};
 use host_sim::scene::octree::OcTree;
 use host_sim::terrain::{Terrain, TerrainSource};
 use image::RgbImage;
+use planner_core::volume::{Field, Heading};
 use planner_core::{Cell, Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
 use super::flight::{Drone, Flight, Layers, shade};
+use super::sight::Sight;
 use crate::colors::Colors;
 
 /// A run over heights.
@@ -136,6 +138,17 @@ impl Flight for Heights {
             ways[usize::from(record.robot)].push(record.at);
         }
         ways
+    }
+
+    fn sight(&self) -> Sight {
+        Sight {
+            range: self.trace().scenario.limits.range,
+            field: Field::ALL_ROUND,
+        }
+    }
+
+    fn headings(&self, _: usize) -> Vec<Heading> {
+        Vec::new()
     }
 
     fn beneath(&self, at: Point) -> f32 {

@@ -9,6 +9,7 @@ use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{Conditions, MediumKind, voxels};
+use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
 /// Numbers of drones.
@@ -27,18 +28,26 @@ pub struct SurveySetup {
     pub terrain: TerrainSource,
     /// Columns along a side.
     pub size: u16,
-    /// How the drones decide.
+    /// How the drones decide over heights.
     pub planner: Planner,
+    /// The same among voxels.
+    pub voxel_planner: voxels::Planner,
     /// Number of drones.
     pub robots: u8,
     /// Sensor range in cells.
     pub range: u8,
+    /// What the drones see of what is in range and in sight.
+    pub sensor: Sensor,
+    /// The image of a camera.
+    pub fov: Fov,
     /// Least altitude over ground, in cells.
     pub min_altitude: f32,
     /// Greatest height, in cells.
     pub ceiling: f32,
     /// What all worlds share.
     pub conditions: Conditions,
+    /// Whether a place that is only in a trace is made of voxels.
+    pub is_scene: bool,
 }
 
 impl Default for SurveySetup {
@@ -47,14 +56,18 @@ impl Default for SurveySetup {
             terrain: TerrainSource::Gaussian(0),
             size: 60,
             planner: Planner::CoordinatedSurvey,
+            voxel_planner: voxels::Planner::default(),
             robots: 4,
             range: 8,
+            sensor: Sensor::default(),
+            fov: Fov::default(),
             min_altitude: 2.0,
             ceiling: 40.0,
             conditions: Conditions {
                 medium: MediumKind::Radio,
                 ..Conditions::flown(0)
             },
+            is_scene: false,
         }
     }
 }
@@ -73,7 +86,9 @@ impl SurveySetup {
     /// The scenario in a town of voxels.
     pub fn voxel_scenario(&self) -> voxels::Scenario {
         voxels::Scenario {
+            planner: self.voxel_planner,
             range: self.range,
+            field: self.sensor.field(self.fov),
             conditions: self.conditions.clone(),
             ..voxels::Scenario::new(self.robots.into(), 0)
         }
@@ -93,6 +108,7 @@ impl SurveySetup {
             min_altitude: limits.min_altitude,
             ceiling: limits.ceiling,
             conditions: scenario.conditions.clone(),
+            ..Self::default()
         }
     }
 
@@ -106,11 +122,17 @@ impl SurveySetup {
         let (scenario, scene) = (&trace.scenario, &trace.scene);
         let size = scene.extent().width;
         let drawn = |terrain: &TerrainSource| terrain.scene(size).as_ref() == Some(scene);
+        let (sensor, fov) = Sensor::of(scenario.field).unwrap_or_default();
+        let terrain = drawn_as(scene.name(), drawn);
         Self {
-            terrain: drawn_as(scene.name(), drawn),
+            is_scene: matches!(terrain, TerrainSource::File(_)),
+            terrain,
             size,
+            voxel_planner: scenario.planner,
             robots: scenario.robots.min(255) as u8,
             range: scenario.range,
+            sensor,
+            fov,
             conditions: scenario.conditions.clone(),
             ..Self::default()
         }
@@ -118,16 +140,47 @@ impl SurveySetup {
 
     /// As [`gives`](Self::gives), among voxels.
     pub fn gives_voxels(&self, trace: &VoxelTrace) -> bool {
-        self.is_drawn() && self.voxel_scenario() == trace.scenario
+        let said = trace.scenario.start;
+        let usual = said.filter(|_| said == trace.scene.start());
+        let scenario = voxels::Scenario {
+            start: usual,
+            ..self.voxel_scenario()
+        };
+        self.is_drawn() && scenario == trace.scenario
     }
 
-    fn is_drawn(&self) -> bool {
+    /// Whether the terrain is one that can be drawn anew.
+    pub fn is_drawn(&self) -> bool {
         !matches!(self.terrain, TerrainSource::File(_))
     }
 
     /// Whether it is flown among voxels.
     pub fn is_of_voxels(&self) -> bool {
-        matches!(self.terrain, TerrainSource::Town(_))
+        match self.terrain {
+            TerrainSource::Town(_) => true,
+            TerrainSource::File(_) => self.is_scene,
+            TerrainSource::Gaussian(_) | TerrainSource::Urban(_) => false,
+        }
+    }
+
+    /// Whether its planner takes more sensors than one.
+    pub fn has_sensors(&self) -> bool {
+        self.is_of_voxels() && self.voxel_planner == voxels::Planner::VoxelSurvey
+    }
+
+    /// The same without what does not apply.
+    #[must_use]
+    pub fn tidied(mut self) -> Self {
+        if !self.has_sensors() {
+            self.sensor = Sensor::default();
+        }
+        if self.sensor != Sensor::Camera {
+            self.fov = Fov::default();
+        }
+        if self.is_drawn() {
+            self.size = self.size.min(*self.sizes().end());
+        }
+        self
     }
 
     /// Columns along a side: what can be drawn in time.
@@ -135,18 +188,29 @@ impl SurveySetup {
         16..=if self.is_of_voxels() { 64 } else { 128 }
     }
 
-    /// Every setting of its own that the terrain leaves, as names and values.
-    fn settings(&self) -> Vec<(&'static str, String)> {
-        let mut settings = vec![("size", self.size.to_string())];
-        if !self.is_of_voxels() {
-            settings.push(("planner", self.planner.to_string()));
-        }
-        settings.push(("robots", self.robots.to_string()));
-        settings.push(("range", self.range.to_string()));
-        if !self.is_of_voxels() {
-            settings.push(("min-altitude", self.min_altitude.to_string()));
-            settings.push(("ceiling", self.ceiling.to_string()));
-        }
+    /// Every setting of its own that applies: name, value, whether that is not the default.
+    fn settings(&self) -> Vec<(&'static str, String, bool)> {
+        let usual = Self::default();
+        let is_of_voxels = self.is_of_voxels();
+        let mut settings = Vec::new();
+        let mut say = |applies, name, value: &dyn ToString, usual: &dyn ToString| {
+            let (value, usual) = (value.to_string(), usual.to_string());
+            let differs = value != usual;
+            settings.extend(Some((name, value, differs)).filter(|_| applies));
+        };
+        say(true, "size", &self.size, &usual.size);
+        // The command has no name for the planner that flies if none is named.
+        let (planner, first) = (&self.voxel_planner, &usual.voxel_planner);
+        say(is_of_voxels && planner != first, "planner", planner, first);
+        say(!is_of_voxels, "planner", &self.planner, &usual.planner);
+        say(true, "robots", &self.robots, &usual.robots);
+        say(true, "range", &self.range, &usual.range);
+        say(self.has_sensors(), "sensor", &self.sensor, &usual.sensor);
+        let has_image = self.has_sensors() && self.sensor == Sensor::Camera;
+        say(has_image, "fov", &self.fov, &usual.fov);
+        let (altitude, ceiling) = (&self.min_altitude, &self.ceiling);
+        say(!is_of_voxels, "min-altitude", altitude, &usual.min_altitude);
+        say(!is_of_voxels, "ceiling", ceiling, &usual.ceiling);
         settings
     }
 
@@ -163,16 +227,10 @@ impl SurveySetup {
     /// defaults.
     pub fn address(&self) -> String {
         let mut address = format!("terrain={}", self.terrain_name());
-        let usual = Self {
-            terrain: self.terrain.clone(),
-            ..Self::default()
-        };
-        for ((name, value), (_, usual)) in self.settings().iter().zip(usual.settings()) {
-            if *value != usual {
-                let _ = write!(address, "&{name}={value}");
-            }
-        }
-        for (name, value) in self.conditions.settings(&usual.conditions) {
+        let own = self.settings().into_iter().filter(|(.., differs)| *differs);
+        let own = own.map(|(name, value, _)| (name, value));
+        let conditions = self.conditions.settings(&Self::default().conditions);
+        for (name, value) in own.chain(conditions) {
             let _ = write!(address, "&{name}={value}");
         }
         address
@@ -196,24 +254,39 @@ impl SurveySetup {
                 Ok(terrain) => terrain,
             };
         }
-        let known = setup.settings();
-        for (name, value) in parts(address).filter(|(name, _)| *name != "terrain") {
-            let is_own = known.iter().any(|(known, _)| *known == name);
-            let done = match name {
-                _ if !is_own => setup.conditions.set(name, value),
-                "size" => within(value, setup.sizes(), &mut setup.size),
-                "planner" => Planner::from_str(value, true)
-                    .ok()
-                    .map(|planner| setup.planner = planner),
-                "robots" => within(value, ROBOTS, &mut setup.robots),
-                "range" => within(value, RANGES, &mut setup.range),
-                "min-altitude" => within(value, ALTITUDES, &mut setup.min_altitude),
-                "ceiling" => within(value, CEILINGS, &mut setup.ceiling),
-                _ => None,
-            };
+        let others = || parts(address).filter(|(name, _)| *name != "terrain");
+        for (name, value) in others() {
+            let done = setup.set(name, value);
             done.ok_or_else(|| wrong(name, value))?;
         }
-        Ok(setup)
+        // A sensor that its planner does not take, an image without a camera.
+        let known = setup.settings();
+        let is_vain =
+            |of: &str| ["sensor", "fov"].contains(&of) && !known.iter().any(|it| it.0 == of);
+        match others().find(|(name, _)| is_vain(name)) {
+            Some((name, value)) => Err(wrong(name, value)),
+            None => Ok(setup),
+        }
+    }
+
+    /// Sets what has this name, if it is there on this terrain and can have this value.
+    fn set(&mut self, name: &str, value: &str) -> Option<()> {
+        let is_of_voxels = self.is_of_voxels();
+        match name {
+            "size" => within(value, self.sizes(), &mut self.size),
+            "planner" if is_of_voxels => chosen(value, &mut self.voxel_planner),
+            "planner" => chosen(value, &mut self.planner),
+            "robots" => within(value, ROBOTS, &mut self.robots),
+            "range" => within(value, RANGES, &mut self.range),
+            "sensor" if is_of_voxels => chosen(value, &mut self.sensor),
+            "fov" if is_of_voxels => {
+                self.fov = value.parse().ok()?;
+                Some(())
+            }
+            "min-altitude" if !is_of_voxels => within(value, ALTITUDES, &mut self.min_altitude),
+            "ceiling" if !is_of_voxels => within(value, CEILINGS, &mut self.ceiling),
+            _ => self.conditions.set(name, value),
+        }
     }
 
     /// The `host-sim` line that runs the same: same trace, same digest.
@@ -222,10 +295,14 @@ impl SurveySetup {
             "cargo run --release -- survey --terrain {}",
             self.terrain_name()
         );
-        let usual = Self::default().conditions;
-        let conditions = self.conditions.settings(&usual);
-        for (name, value) in self.settings().into_iter().chain(conditions) {
-            let _ = write!(command, " --{name} {value}");
+        let own = self.settings().into_iter();
+        let own = own.map(|(name, value, _)| (name, value));
+        let conditions = self.conditions.settings(&Self::default().conditions);
+        for (name, value) in own.chain(conditions) {
+            let _ = write!(command, " --{name}");
+            if !value.is_empty() {
+                let _ = write!(command, " {value}");
+            }
         }
         command
     }
@@ -246,6 +323,12 @@ fn parts(address: &str) -> impl Iterator<Item = (&str, &str)> {
     parts
         .filter(|part| !part.is_empty())
         .map(|part| part.split_once('=').unwrap_or((part, "")))
+}
+
+/// Sets one of several, if it is named so.
+fn chosen<T: ValueEnum>(value: &str, to: &mut T) -> Option<()> {
+    *to = T::from_str(value, true).ok()?;
+    Some(())
 }
 
 /// Sets a number, if it is one and within its limits.
@@ -280,6 +363,7 @@ pub(super) mod tests {
             min_altitude: 1.5,
             ceiling: 50.0,
             conditions: conditions(),
+            ..SurveySetup::default()
         }
     }
 
@@ -294,9 +378,31 @@ pub(super) mod tests {
         }
     }
 
+    pub(in crate::survey) fn filmed() -> SurveySetup {
+        SurveySetup {
+            sensor: Sensor::Camera,
+            fov: Fov::new(100, 60).unwrap(),
+            ..town()
+        }
+    }
+
+    /// By what the planner of the core is compared with.
+    pub(in crate::survey) fn compared() -> SurveySetup {
+        SurveySetup {
+            voxel_planner: voxels::Planner::Greedy,
+            ..town()
+        }
+    }
+
     #[test]
     fn an_address_carries_everything() {
-        for setup in [SurveySetup::default(), unusual(), town()] {
+        for setup in [
+            SurveySetup::default(),
+            unusual(),
+            town(),
+            filmed(),
+            compared(),
+        ] {
             let address = setup.address();
             assert!(SurveySetup::is_meant(&address));
             assert_eq!(SurveySetup::from_address(&address), Ok(setup));
@@ -318,9 +424,21 @@ pub(super) mod tests {
             let error = SurveySetup::from_address(&format!("terrain=urban:1&{part}")).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
-        // Among voxels one planner flies, in a smaller town.
-        for part in ["planner=fcao", "ceiling=30", "size=80"] {
-            let error = SurveySetup::from_address(&format!("{part}&terrain=town:1")).unwrap_err();
+        // What does not apply: other planners fly among voxels, in a smaller town.
+        for (terrain, part) in [
+            ("town:1", "planner=fcao"),
+            ("town:1", "ceiling=30"),
+            ("town:1", "size=80"),
+            ("town:1", "sensor=radar"),
+            ("town:1", "fov=90x60"),
+            ("town:1&sensor=camera", "fov=9x60"),
+            ("town:1&sensor=lidar", "fov=90x60"),
+            ("town:1&planner=greedy", "sensor=camera"),
+            ("urban:1", "planner=voxel-survey"),
+            ("urban:1", "sensor=camera"),
+        ] {
+            let address = format!("{part}&terrain={terrain}");
+            let error = SurveySetup::from_address(&address).unwrap_err();
             assert!(error.contains(part), "{error}");
         }
     }
@@ -335,7 +453,17 @@ pub(super) mod tests {
         assert_eq!(
             town().command(),
             "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
-             --medium ideal --loss 0.25 --seed 7"
+             --sensor all-round --medium ideal --loss 0.25 --seed 7"
+        );
+        assert_eq!(
+            filmed().command(),
+            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
+             --sensor camera --fov 100x60 --medium ideal --loss 0.25 --seed 7"
+        );
+        assert_eq!(
+            compared().command(),
+            "cargo run --release -- survey --terrain town:2 --size 24 --planner greedy --robots 3 \
+             --range 6 --medium ideal --loss 0.25 --seed 7"
         );
     }
 }

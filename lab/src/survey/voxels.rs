@@ -7,12 +7,13 @@ use host_sim::run::voxels::Simulation;
 use host_sim::scene::Scene;
 use host_sim::scene::octree::OcTree;
 use image::RgbImage;
-use planner_core::volume::Voxel;
+use planner_core::volume::{Heading, Voxel};
 use planner_core::{Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
 use super::flight::{Drone, Flight, Layers, shade};
+use super::sight::{self, Sight};
 use crate::colors::Colors;
 
 /// Not seen.
@@ -140,6 +141,20 @@ impl Flight for Voxels {
             .collect()
     }
 
+    fn sight(&self) -> Sight {
+        let scenario = &self.trace().scenario;
+        Sight {
+            range: scenario.range.into(),
+            field: scenario.field,
+        }
+    }
+
+    fn headings(&self, steps: usize) -> Vec<Heading> {
+        let turns = self.trace().headings.iter();
+        let last = |turns: &Vec<Heading>| turns.get(steps).or(turns.last()).copied();
+        turns.filter_map(last).collect()
+    }
+
     fn beneath(&self, at: Point) -> f32 {
         let (cell, scene) = (at.cell(), &self.trace().scene);
         let below = (0..at.z as i16).rev();
@@ -207,7 +222,12 @@ impl Flight for Voxels {
     fn drone(&self, drone: usize, steps: u32) -> Drone {
         let trace = self.trace();
         let faults = &trace.scenario.conditions.faults;
-        Drone::of((&trace.records, faults), drone, steps, |at| at.to_string())
+        let mut seen = Drone::of((&trace.records, faults), drone, steps, |at| at.to_string());
+        if let Some(&heading) = self.headings(steps as usize).get(drone) {
+            let turned = ("turned to the", sight::name(heading).into());
+            seen.rows.insert(1, turned);
+        }
+        seen
     }
 
     fn file(&self) -> Result<Vec<u8>, String> {

@@ -7,6 +7,10 @@ mod painter;
 use egui::{Key, Theme, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, SnapshotOptions};
+use host_sim::run::{heights, voxels as among_voxels};
+use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::voxels;
+use host_sim::terrain::TerrainSource;
 use lab::App;
 use lab::playback::{Export, Playback};
 use painter::Painter;
@@ -127,6 +131,48 @@ fn a_town_of_voxels_is_chosen_looked_into_and_shared() {
     assert_eq!(copied(&mut harness, "Copy command"), setup.command());
     let address = "#terrain=town:1&size=40&robots=3";
     assert_eq!(copied(&mut harness, "Copy address"), address);
+}
+
+/// The field of the selected drone's camera is drawn as it is turned; on a phone, those of
+/// all.
+#[test]
+fn cameras_in_a_town_of_voxels() {
+    let address = "terrain=town:1&size=40&robots=3&sensor=camera";
+    let mut laptop = harness(address, 1280.0, 800.0, Theme::Dark);
+    laptop.state_mut().selected = Some(1);
+    laptop.state_mut().survey.as_mut().unwrap().layers.levels = 12;
+    play(&mut laptop, 150);
+    compare(&mut laptop, "camera");
+    laptop.get_by_label("turned to the");
+    assert_eq!(copied(&mut laptop, "Copy address"), format!("#{address}"));
+    let mut phone = harness(address, 390.0, 780.0, Theme::Light);
+    play(&mut phone, 150);
+    compare(&mut phone, "phone-camera");
+}
+
+/// What the menus cannot set is shown as it was flown.
+#[test]
+fn a_trace_beyond_the_menus_is_not_flown_anew() {
+    let mut scenario = Scenario::new(Planner::ClosestFrontier, 40, 0);
+    scenario.limits.ceiling = 80.0;
+    scenario.limits.range = 9.5;
+    let terrain = TerrainSource::Urban(3).load(30).unwrap();
+    let trace = heights::run(&terrain, &scenario).unwrap();
+    let mut scene = TerrainSource::Town(1).scene(16).unwrap();
+    scene = scene.named("elsewhere");
+    let town = among_voxels::run(&scene, &voxels::Scenario::new(2, 0)).unwrap();
+    let (mut file, mut other) = (Vec::new(), Vec::new());
+    trace.write(&mut file).unwrap();
+    town.write(&mut other).unwrap();
+    for (file, digest) in [(file, trace.digest()), (other, town.digest())] {
+        let mut harness = harness("map=circle", 1280.0, 900.0, Theme::Light);
+        harness.state_mut().open("trace.csv", &file);
+        harness.state_mut().playing = false;
+        harness.run();
+        let report = harness.state().report();
+        assert_eq!((report.error.as_str(), report.digest), ("", digest));
+        assert!(harness.state().survey.as_ref().unwrap().is_replay());
+    }
 }
 
 #[test]

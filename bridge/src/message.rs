@@ -8,7 +8,7 @@ use planner_core::survey::SetupError;
 use planner_core::tile::TileIndex;
 use planner_core::{
     Action, Cell, Extent, Learnt, Map, Motion, RobotId, Sighting, Status, Wait, explorer,
-    local_frontiers,
+    local_frontiers, voxel_survey,
 };
 use serde::{Deserialize, Serialize};
 
@@ -45,8 +45,8 @@ impl PlannerConfig {
 /// What the simulator asks for: a verb of the planner, or something about it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Request<'a> {
-    /// Sets up a planner. The first request, or else [`Survey`](Self::Survey);
-    /// answered by a [`Welcome`].
+    /// Sets up a planner. The first request, or else [`Survey`](Self::Survey) or
+    /// [`Voxels`](Self::Voxels); answered by a [`Welcome`].
     Start {
         /// Which one.
         planner: PlannerConfig,
@@ -66,6 +66,18 @@ pub enum Request<'a> {
         id: RobotId,
         /// Size of the surface.
         extent: Extent,
+    },
+    /// Sets up the planner of a robot that flies among voxels; answered by a [`Welcome`].
+    /// Whatever follows is a [`VoxelRequest`](crate::VoxelRequest).
+    Voxels {
+        /// How it decides.
+        planner: voxel_survey::Config,
+        /// The robot's number.
+        id: RobotId,
+        /// Columns of the box.
+        extent: Extent,
+        /// Its levels.
+        levels: u8,
     },
     /// [`Reply::Learnt`].
     Observe(Sighting),
@@ -159,12 +171,12 @@ pub enum Reply {
     Memory(Memory),
 }
 
-/// The answer to [`Request::Start`] and [`Request::Survey`].
+/// The answer to [`Request::Start`], [`Request::Survey`] and [`Request::Voxels`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Welcome {
     /// The planner is set up.
     Ready(Hello),
-    /// The grid does not fit the image's map; the image ends.
+    /// The grid or box does not fit the image's map; the image ends.
     Refused(ExtentError),
     /// The robot cannot fly like this; the image ends.
     Grounded(SetupError),

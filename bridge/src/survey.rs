@@ -197,12 +197,12 @@ fn hash(patches: impl Iterator<Item = Patch>) -> u32 {
     }))
 }
 
-const SEED: u64 = 0xcbf2_9ce4_8422_2325;
+pub(crate) const SEED: u64 = 0xcbf2_9ce4_8422_2325;
 
-const fn eat(hash: u64, word: u64) -> u64 {
+pub(crate) const fn eat(hash: u64, word: u64) -> u64 {
     (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3)
 }
 
-const fn folded(hash: u64) -> u32 {
+pub(crate) const fn folded(hash: u64) -> u32 {
     (hash ^ hash >> 32) as u32
 }

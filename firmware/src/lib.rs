@@ -1,5 +1,5 @@
 //! What every image for the chip shares: the world it explores, the measures of
-//! its time and memory, and how it ends.
+//! its time and memory, the way to the simulator, and how it ends.
 //!
 //! On the host this crate is empty; see `main.rs` for the image itself.
 #![cfg_attr(target_os = "none", no_std)]
@@ -10,6 +10,8 @@ mod board;
 mod end;
 #[cfg(target_os = "none")]
 mod explore;
+#[cfg(target_os = "none")]
+mod host;
 #[cfg(target_os = "none")]
 pub mod memory;
 #[cfg(target_os = "none")]
@@ -24,6 +26,7 @@ pub use {
     board::{CLOCK_HZ, COLUMNS, ROWS},
     end::{Ending, end, fail},
     explore::{Exploration, explore},
+    host::{Host, Refused, Trouble},
     stopwatch::Stopwatch,
     world::World,
 };

@@ -1,5 +1,9 @@
 //! What the image takes of the chip, by the linker's symbols.
 
+use bridge::Memory;
+
+use crate::stack;
+
 unsafe extern "C" {
     // Defined by the linker scripts of cortex-m-rt; only their addresses mean anything.
     static __vector_table: u32;
@@ -19,4 +23,16 @@ pub fn statics() -> usize {
 pub fn flash() -> usize {
     let initial_values = (&raw const __edata).addr() - (&raw const __sdata).addr();
     (&raw const __sidata).addr() + initial_values - (&raw const __vector_table).addr()
+}
+
+/// What the image and a planner of that size take.
+pub fn taken(planner: usize) -> Memory {
+    let bytes = |size: usize| size as u32;
+    Memory {
+        planner: bytes(planner),
+        statics: bytes(statics()),
+        flash: bytes(flash()),
+        stack_peak: bytes(stack::peak()),
+        stack: bytes(stack::size()),
+    }
 }

@@ -59,12 +59,12 @@ impl Machine {
     }
 }
 
-/// Builds the images of a board: the one that explores a built-in map, where the
-/// board has room for it, and the robot of `host-sim firmware`. Returns the latter
-/// last.
+/// Builds the images of a board: the one that explores a built-in map and the robot among
+/// voxels, where the board has room for them, and the robot of `host-sim firmware`. Returns
+/// the latter last.
 pub(crate) fn build_images(machine: Machine) -> Result<Vec<Image>> {
     let names: &[&str] = match machine {
-        Machine::Netduinoplus2 => &["firmware", "robot"],
+        Machine::Netduinoplus2 => &["firmware", "voxels", "robot"],
         Machine::Mps2An385 | Machine::Microbit => &["robot"],
     };
     names
@@ -153,7 +153,7 @@ pub(crate) fn decides_as_the_host_with_micromath() -> Result<String> {
 
 /// Tests of host-sim/tests/chips that let chips explore, and how many whole
 /// explorations they make at least.
-const EXPLORING_TESTS: usize = 3;
+const EXPLORING_TESTS: usize = 4;
 const EXPLORATIONS: u32 = 50;
 
 /// Builds the image, runs it and shows its report.

@@ -60,8 +60,8 @@ pub enum ChipError {
     },
     /// See the message.
     #[error(
-        "the image in the chip of robot {} hosts no planner for robots that fly; \
-         the one for netduinoplus2 does",
+        "the image in the chip of robot {} hosts no planner of this kind; for robots that fly \
+         the one for netduinoplus2 does, and among voxels its image `voxels`",
         robot.0
     )]
     NotHosted {

@@ -7,7 +7,7 @@
 //! nothing. Media and traces look at a robot's map: the proxy keeps a copy, fed
 //! with what the chip is fed with, and in every tick the chip's grid_hash of its
 //! own map must be that of the copy. A `SurveyProxy` is the same for a robot that
-//! flies.
+//! flies, and a `VoxelProxy` for one among voxels, which runs the image `voxels`.
 
 mod dialogue;
 mod emulator;
@@ -15,6 +15,7 @@ mod error;
 mod proxy;
 mod surveyor;
 mod swarm;
+mod voxels;
 
 pub use emulator::Machine;
 pub use error::ChipError;

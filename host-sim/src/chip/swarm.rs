@@ -8,16 +8,19 @@ use std::time::Duration;
 use bridge::{Cost, SurveyorConfig};
 use planner_core::sight::MAX_RADIUS;
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
-use planner_core::{AnyPlanner, Extent, RobotId};
+use planner_core::voxel_survey::Config;
+use planner_core::{AnyPlanner, Extent, ExtentError, RobotId};
 
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
 use super::proxy::Proxy;
 use super::surveyor::SurveyProxy;
+use super::voxels::VoxelProxy;
 use crate::measured::{Call, Measured};
 use crate::planners::{PlannerKind, Setup};
 use crate::record::grid::Trace;
-use crate::run::{self, Host, Options, Outcome, heights};
+use crate::run::voxels::{self, Pilot};
+use crate::run::{self, Here, Host, Options, Outcome, heights};
 use crate::scenario::ScenarioError;
 use crate::scenario::grid::Scenario;
 
@@ -117,6 +120,25 @@ impl Host for Swarm {
     ) -> Box<dyn AnyPlanner<TW, TH>> {
         let chip = Chip::start(setup.id, self.machine, &self.image, self.limit);
         Box::new(Proxy::new(chip, self.book.clone(), kind, setup))
+    }
+
+    fn has_failed(&self) -> bool {
+        self.book.failure.get().is_some()
+    }
+}
+
+impl voxels::Host for Swarm {
+    fn pilot(
+        &self,
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        levels: u8,
+    ) -> Result<Box<dyn Pilot>, ExtentError> {
+        let mirror = voxels::Host::pilot(&Here, config, id, extent, levels)?;
+        let chip = Chip::start(id, self.machine, &self.image, self.limit);
+        let book = self.book.clone();
+        Ok(Box::new(VoxelProxy::new(chip, book, mirror, config, id)))
     }
 
     fn has_failed(&self) -> bool {

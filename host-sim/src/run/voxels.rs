@@ -19,10 +19,13 @@ use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::voxels::{Record, VoxelTrace};
 use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
+use crate::run::Here;
 use crate::scenario::voxels::{Planner, Scenario};
 use crate::scenario::{Faults, MediumKind, ScenarioError};
 use crate::scene::{Marks, Scene, look_towards, visible};
-use pilot::{Pilot, pilot};
+use pilot::pilot;
+
+pub use pilot::{Host, Pilot};
 
 /// Words of its map that a robot repeats in each step, in turn.
 const IN_TURN: usize = 16;
@@ -138,15 +141,31 @@ impl Station for Robot {
 /// # Errors
 /// As [`Simulation::new`].
 pub fn run(scene: &Scene, scenario: &Scenario) -> Result<VoxelTrace, ScenarioError> {
-    let mut run = Simulation::new(scene, scenario)?;
-    while run.step() {}
+    run_on(&Here, scene, scenario)
+}
+
+/// As [`run`], with the planners elsewhere.
+///
+/// # Errors
+/// As [`Simulation::new`].
+pub fn run_on(
+    host: &impl Host,
+    scene: &Scene,
+    scenario: &Scenario,
+) -> Result<VoxelTrace, ScenarioError> {
+    let mut run = Simulation::new_on(host, scene, scenario)?;
+    while !host.has_failed() && run.step() {}
     Ok(run.finish())
 }
+
+/// Makes a robot's planner.
+type Build = Box<dyn Fn(RobotId) -> Result<Box<dyn Pilot>, ExtentError>>;
 
 /// A run that goes on step by step, for whoever wants to watch.
 pub struct Simulation {
     scene: Arc<Scene>,
     config: Config,
+    build: Build,
     robots: Vec<Robot>,
     trace: VoxelTrace,
     radio: Radio<Scene>,
@@ -166,6 +185,10 @@ impl Simulation {
     /// # Errors
     /// A setting is out of its range, there is no room for a robot, or nothing to see.
     pub fn new(scene: &Scene, scenario: &Scenario) -> Result<Self, ScenarioError> {
+        Self::new_on(&Here, scene, scenario)
+    }
+
+    fn new_on(host: &impl Host, scene: &Scene, scenario: &Scenario) -> Result<Self, ScenarioError> {
         scenario.check(scene)?;
         let start = scenario.start_in(scene)?;
         let config = Config {
@@ -173,23 +196,24 @@ impl Simulation {
             field: scenario.field,
             link: scenario.conditions.link(),
         };
+        let scene = Arc::new(scene.clone());
+        let build: Build = {
+            let (host, scene, how) = (host.clone(), scene.clone(), scenario.planner);
+            Box::new(move |id| pilot(&host, &scene, config, how, id))
+        };
         let robot = |id| {
             let id = RobotId(id as u8);
-            Ok(Robot::new(
-                id,
-                start,
-                pilot(scene, config, scenario.planner, id)?,
-            ))
+            Ok(Robot::new(id, start, build(id)?))
         };
         let robots = (0..scenario.robots).map(robot);
         let robots = robots.collect::<Result<_, ExtentError>>()?;
-        let visible = visible(scene, start, scenario.range, scenario.field);
+        let visible = visible(&scene, start, scenario.range, scenario.field);
         if visible.count() == 0 {
             return Err(ScenarioError::NothingToSee);
         }
-        let scene = Arc::new(scene.clone());
         Ok(Self {
             config,
+            build,
             robots,
             trace: VoxelTrace {
                 scenario: scenario.clone(),
@@ -273,9 +297,7 @@ impl Simulation {
             robot.alive = faults.is_alive(robot.id, self.now);
             robot.sent = Sent::default();
             if robot.alive && Faults::befalls(&faults.restarts, robot.id, self.now) {
-                let how = self.trace.scenario.planner;
-                let planner = pilot(&self.scene, self.config, how, robot.id);
-                robot.planner = planner.expect("it was set up like this before");
+                robot.planner = (self.build)(robot.id).expect("it was set up like this before");
                 robot.stopped = false;
             }
             if robot.alive && Faults::befalls(&faults.resumes, robot.id, self.now) {

@@ -7,6 +7,7 @@
 mod endings;
 mod explorations;
 mod surveys;
+mod voxels;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -30,8 +31,14 @@ impl Largest {
         *largest = value.max(*largest);
     }
 
-    /// Notes what a planner took for some of its calls.
+    /// Notes what a planner of the image `robot` took for some of its calls, and the image.
     fn take(&mut self, planner: &str, calls: &[Call], measured: &Measured) {
+        self.take_calls(planner, calls, measured);
+        self.take_image("", measured);
+    }
+
+    /// Notes what a planner took for some of its calls.
+    fn take_calls(&mut self, planner: &str, calls: &[Call], measured: &Measured) {
         for call in calls {
             if let Some(tally) = measured.calls.get(call) {
                 self.note(format!("loop_{planner}_{call}_instructions"), tally.largest);
@@ -39,12 +46,16 @@ impl Largest {
                 self.note(format!("loop_{planner}_stack_bytes"), stack);
             }
         }
+    }
+
+    /// Notes what an image takes, whose limits have that prefix.
+    fn take_image(&mut self, prefix: &str, measured: &Measured) {
         let bytes = [
             ("flash", measured.flash_bytes),
             ("static", measured.static_bytes),
         ];
         for (name, size) in bytes {
-            self.note(format!("loop_{name}_bytes"), size.into());
+            self.note(format!("loop_{prefix}{name}_bytes"), size.into());
         }
     }
 

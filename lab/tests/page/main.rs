@@ -92,10 +92,16 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
     swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");
     assert_eq!(chips.digest(), here, "{address}");
-    // What flies among voxels has no image for the chip yet.
     let address = "terrain=town:2&size=24&robots=3&range=6&loss=0.2&seed=4";
-    let here = by_command(&SurveySetup::from_address(address).unwrap().command());
+    let setup = SurveySetup::from_address(address).unwrap();
+    let here = by_command(&setup.command());
+    let image = root().join(machine.image()).with_file_name("voxels");
+    let swarm = Swarm::new(machine, image);
+    let town = Scene::town(2, setup.size);
+    let chips = voxels::run_on(&swarm, &town, &setup.voxel_scenario()).unwrap();
+    swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");
+    assert_eq!(chips.digest(), here, "{address}");
     assert_eq!(browser.console(), [""; 0]);
 }
 

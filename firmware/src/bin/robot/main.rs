@@ -4,8 +4,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-mod host;
-#[cfg(target_os = "none")]
 mod robot;
 // Only where there is a unit for its floats, and room for its planners.
 #[cfg(all(target_os = "none", board = "stm32f405"))]

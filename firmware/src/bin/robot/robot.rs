@@ -1,10 +1,10 @@
 //! The planner, and what the simulator asks of it.
 
 use bridge::{
-    Answer, Cost, FrameBytes, Hello, Inbox, MAX_MESSAGE, Memory, PlannerConfig, Reply, Request,
-    Rows, State, VERSION, Welcome, grid_hash,
+    Answer, Cost, FrameBytes, Hello, Inbox, MAX_MESSAGE, PlannerConfig, Reply, Request, Rows,
+    State, VERSION, Welcome, grid_hash,
 };
-use firmware::{CLOCK_HZ, COLUMNS, ROWS, Stopwatch, memory, stack};
+use firmware::{CLOCK_HZ, COLUMNS, Host, ROWS, Stopwatch, Trouble, memory};
 use planner_core::ExtentError;
 use planner_core::explorer::Explorer;
 use planner_core::local_frontiers::LocalFrontiers;
@@ -13,8 +13,6 @@ use planner_core::radio::{MAX_LEN, TileRecord};
 use planner_core::tile::{TileIndex, TileSet};
 use planner_core::{AnyPlanner, Cell, Extent, RobotId};
 use static_cell::ConstStaticCell;
-
-use crate::host::{Host, Trouble};
 
 // Every planner that the image can host has its place; one of them is used.
 static EXPLORER: ConstStaticCell<Explorer<COLUMNS, ROWS>> =
@@ -63,6 +61,7 @@ pub(crate) fn serve() -> Result<(), Trouble> {
         }
         #[cfg(not(board = "stm32f405"))]
         Request::Survey { .. } => return host.answer(&Welcome::NotHosted, outbox),
+        Request::Voxels { .. } => return host.answer(&Welcome::NotHosted, outbox),
         _ => return Err(Trouble::NotStarted),
     };
     let stage = STAGE.take();
@@ -167,8 +166,10 @@ fn obey(
         }
         Request::Hear(id, status) => done(stopwatch.measure(|| planner.hear(id, status))),
         Request::Adopt(role) => done(stopwatch.measure(|| planner.adopt(role))),
-        Request::Memory => (Reply::Memory(memory(size)), Cost::default()),
-        Request::Start { .. } | Request::Survey { .. } | Request::End => return None,
+        Request::Memory => (Reply::Memory(memory::taken(size)), Cost::default()),
+        Request::Start { .. } | Request::Survey { .. } | Request::Voxels { .. } | Request::End => {
+            return None;
+        }
     })
 }
 
@@ -187,17 +188,5 @@ fn state(planner: &Robot) -> State {
         role: planner.role(),
         waiting: planner.waiting(),
         hearsay: planner.hearsay(),
-    }
-}
-
-/// What the image and a planner of that size take.
-pub(crate) fn memory(planner: usize) -> Memory {
-    let bytes = |size: usize| size as u32;
-    Memory {
-        planner: bytes(planner),
-        statics: bytes(memory::statics()),
-        flash: bytes(memory::flash()),
-        stack_peak: bytes(stack::peak()),
-        stack: bytes(stack::size()),
     }
 }

@@ -4,16 +4,13 @@ use bridge::{
     Cost, Hello, Inbox, MAX_MESSAGE, Seen, SurveyAnswer, SurveyReply, SurveyRequest,
     SurveyorConfig, VERSION, Welcome, frame_hash, patches_hash, surface_hash,
 };
-use firmware::{CLOCK_HZ, Stopwatch};
+use firmware::{CLOCK_HZ, Host, Stopwatch, Trouble, memory};
 use planner_core::coordinated_survey::CoordinatedSurvey;
 use planner_core::fcao::Fcao;
 use planner_core::radio::MAX_LEN;
 use planner_core::survey::{SetupError, Surveyor};
 use planner_core::{Extent, RobotId};
 use static_cell::ConstStaticCell;
-
-use crate::host::{Host, Trouble};
-use crate::robot::memory;
 
 /// Tiles along a side of the map: 104×104 columns.
 const TILES: usize = 13;
@@ -143,7 +140,7 @@ fn obey(
             let (heard, cost) = stopwatch.measure(|| planner.receive(bytes));
             (SurveyReply::Heard(heard), cost)
         }
-        SurveyRequest::Memory => (SurveyReply::Memory(memory(size)), Cost::default()),
+        SurveyRequest::Memory => (SurveyReply::Memory(memory::taken(size)), Cost::default()),
         SurveyRequest::End => return None,
     })
 }

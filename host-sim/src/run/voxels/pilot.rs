@@ -7,6 +7,7 @@ use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
 use super::follower::Follower;
+use crate::run::Here;
 use crate::scenario::voxels::Planner;
 use crate::scene::Scene;
 #[cfg(not(target_arch = "wasm32"))]
@@ -16,8 +17,43 @@ use crate::scene::{LARGEST, LEVELS};
 #[cfg(not(target_arch = "wasm32"))]
 const MOST_ON_STACK: usize = 128 << 10;
 
-/// [`VoxelSurvey`] of any size.
-pub(super) trait Pilot: Send {
+/// Where the planners of a survey among voxels are.
+pub trait Host: Clone + 'static {
+    /// The planner of a robot in a box of `extent` columns and `levels` levels.
+    ///
+    /// # Errors
+    /// The box is larger than the largest.
+    fn pilot(
+        &self,
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        levels: u8,
+    ) -> Result<Box<dyn Pilot>, ExtentError>;
+
+    /// Whether the run has to end because a planner is lost.
+    fn has_failed(&self) -> bool;
+}
+
+impl Host for Here {
+    fn pilot(
+        &self,
+        config: Config,
+        id: RobotId,
+        extent: Extent,
+        levels: u8,
+    ) -> Result<Box<dyn Pilot>, ExtentError> {
+        of_core(config, id, extent, levels)
+    }
+
+    fn has_failed(&self) -> bool {
+        false
+    }
+}
+
+/// [`VoxelSurvey`] of any size, wherever it is: its calls, and what they change.
+#[expect(missing_docs, reason = "they are the calls of VoxelSurvey and Volume")]
+pub trait Pilot {
     fn observe(&mut self, at: Voxel, heading: Heading, seen: &[(Voxel, bool)]);
     fn heading(&self) -> Heading;
     fn tick(&mut self) -> Action<Voxel, Voxel>;
@@ -115,30 +151,35 @@ impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW,
 /// # Errors
 /// The scene is larger than the largest.
 pub(super) fn pilot(
+    host: &impl Host,
     scene: &Scene,
     config: Config,
     planner: Planner,
     id: RobotId,
 ) -> Result<Box<dyn Pilot>, ExtentError> {
-    let pilot = of_core(scene, config, id)?;
+    let pilot = host.pilot(config, id, scene.extent(), scene.levels())?;
     Ok(match planner {
         Planner::VoxelSurvey => pilot,
         Planner::ClosestFrontier | Planner::Greedy => Box::new(Follower::new(pilot, config.range)),
     })
 }
 
-/// The planner of the core for `scene`: of the smallest of a few sizes that fits.
+/// The planner of the core: of the smallest of a few sizes that fits.
 ///
 /// # Errors
-/// The scene is larger than the largest.
+/// The box is larger than the largest.
 #[cfg(not(target_arch = "wasm32"))]
-fn of_core(scene: &Scene, config: Config, id: RobotId) -> Result<Box<dyn Pilot>, ExtentError> {
-    let Extent { width, height } = scene.extent();
-    match (width.max(height), scene.levels()) {
-        (0..=64, 0..=24) => survey::<8, 8, 24>(scene, config, id),
-        (0..=256, 0..=64) => survey::<32, 32, 64>(scene, config, id),
+fn of_core(
+    config: Config,
+    id: RobotId,
+    extent: Extent,
+    levels: u8,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    match (extent.width.max(extent.height), levels) {
+        (0..=64, 0..=24) => survey::<8, 8, 24>(config, id, extent, levels),
+        (0..=256, 0..=64) => survey::<32, 32, 64>(config, id, extent, levels),
         _ => survey::<{ LARGEST as usize / 8 }, { LARGEST as usize / 8 }, { LEVELS as usize }>(
-            scene, config, id,
+            config, id, extent, levels,
         ),
     }
 }
@@ -146,18 +187,23 @@ fn of_core(scene: &Scene, config: Config, id: RobotId) -> Result<Box<dyn Pilot>,
 /// The same in the browser, whose stack holds the smallest alone.
 ///
 /// # Errors
-/// The scene is larger.
+/// The box is larger.
 #[cfg(target_arch = "wasm32")]
-fn of_core(scene: &Scene, config: Config, id: RobotId) -> Result<Box<dyn Pilot>, ExtentError> {
-    survey::<8, 8, 24>(scene, config, id)
+fn of_core(
+    config: Config,
+    id: RobotId,
+    extent: Extent,
+    levels: u8,
+) -> Result<Box<dyn Pilot>, ExtentError> {
+    survey::<8, 8, 24>(config, id, extent, levels)
 }
 
 fn survey<const TW: usize, const TH: usize, const L: usize>(
-    scene: &Scene,
     config: Config,
     id: RobotId,
+    extent: Extent,
+    levels: u8,
 ) -> Result<Box<dyn Pilot>, ExtentError> {
-    let (extent, levels) = (scene.extent(), scene.levels());
     let mut survey = boxed(VoxelSurvey::<TW, TH, L>::vacant);
     survey.reset(config, id, extent, levels)?;
     Ok(survey)

@@ -11,7 +11,7 @@ use cortex_m_semihosting::syscall;
 use serde::{Deserialize, Serialize};
 
 /// Why the dialogue ended.
-pub(crate) enum Trouble {
+pub enum Trouble {
     /// The host does not open a stream.
     Stream(&'static str),
     /// No whole message arrived.
@@ -41,7 +41,7 @@ impl fmt::Display for Trouble {
 
 /// The host refused a semihosting call.
 #[derive(Debug)]
-pub(crate) struct Refused;
+pub struct Refused;
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -50,13 +50,17 @@ impl fmt::Display for Refused {
 }
 
 /// The two streams.
-pub(crate) struct Host {
+pub struct Host {
     requests: usize,
     answers: usize,
 }
 
 impl Host {
-    pub(crate) fn connect() -> Result<Self, Trouble> {
+    /// Opens both.
+    ///
+    /// # Errors
+    /// The host does not open one of them.
+    pub fn connect() -> Result<Self, Trouble> {
         const READ_BINARY: usize = 1;
         const WRITE_BINARY: usize = 5;
         Ok(Self {
@@ -66,14 +70,21 @@ impl Host {
     }
 
     /// Waits for a request.
-    pub(crate) fn ask<'a, T: Deserialize<'a>>(&self, inbox: &'a mut Inbox) -> Result<T, Trouble> {
+    ///
+    /// # Errors
+    /// None arrives, or none that makes sense.
+    pub fn ask<'a, T: Deserialize<'a>>(&self, inbox: &'a mut Inbox) -> Result<T, Trouble> {
         inbox
             .read(|place| read(self.requests, place))
             .map_err(Trouble::Read)?;
         bridge::decode(inbox.message()).map_err(Trouble::Message)
     }
 
-    pub(crate) fn answer(
+    /// Answers it.
+    ///
+    /// # Errors
+    /// The host does not take the answer.
+    pub fn answer(
         &self,
         answer: &impl Serialize,
         buffer: &mut [u8; MAX_MESSAGE],

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use browser::{Browser, serve};
 use host_sim::chip::{Machine, Swarm};
-use host_sim::run::{self, Options, heights};
+use host_sim::run::{self, Options, heights, voxels};
 use lab::playback::{Export, Playback};
 use lab::setup::Setup;
 use lab::survey::{SurveyScene, SurveySetup};
@@ -97,7 +97,7 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
     let here = by_command(&setup.command());
     let image = root().join(machine.image()).with_file_name("voxels");
     let swarm = Swarm::new(machine, image);
-    let town = Scene::town(2, setup.size);
+    let town = setup.terrain.scene(setup.size).unwrap();
     let chips = voxels::run_on(&swarm, &town, &setup.voxel_scenario()).unwrap();
     swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");

@@ -82,6 +82,14 @@ impl Field {
     /// As an angle's tangent: a right angle.
     pub const STEEP: u16 = u16::MAX;
 
+    /// Shows nothing; all zero.
+    pub(crate) const NONE: Self = Self {
+        up: 0,
+        down: 0,
+        side: None,
+        near: 0,
+    };
+
     /// Everything.
     pub const ALL_ROUND: Self = Self {
         up: Self::STEEP,

@@ -176,7 +176,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub const fn vacant() -> Self {
         Self {
             range: 0,
-            field: Field::ALL_ROUND,
+            field: Field::NONE,
             volume: Volume::vacant(),
             done: Layer::EMPTY,
             position: Voxel::new(0, 0, 0),

@@ -66,6 +66,12 @@
 // `fixtures/budget.txt`, and one that tells that it is there.
 #define PLANNER_VOXEL_SURVEY_WORDS 3073
 
+// Zones of a sensor.
+#define PLANNER_ZONES 64
+
+// Beams that they make: one for each column.
+#define PLANNER_ZONE_BEAMS 8
+
 // What came of a call.
 typedef enum {
   // Done.
@@ -135,6 +141,16 @@ typedef enum {
   PLANNER_RESULT_RANGE = 29,
   // The heading is above 7.
   PLANNER_RESULT_HEADING = 30,
+  // The field of view of a sensor with zones is not above 0 and up to pi/2.
+  PLANNER_RESULT_ZONE_FIELD_OF_VIEW = 31,
+  // Its pitch is not between -pi/4 and pi/4.
+  PLANNER_RESULT_ZONE_PITCH = 32,
+  // Its yaw is not finite.
+  PLANNER_RESULT_ZONE_YAW = 33,
+  // Not `floor_mm` < `height_mm` < `top_mm`.
+  PLANNER_RESULT_ZONE_HEIGHTS = 34,
+  // Its largest range or the side of a cell is 0.
+  PLANNER_RESULT_ZONE_ZERO = 35,
 } PlannerResult;
 
 // What the robot shall do.
@@ -524,6 +540,45 @@ typedef struct {
   uint16_t refused;
 } PlannerVoxelStatus;
 
+// A sensor with 8×8 zones, and how it is mounted.
+typedef struct {
+  // 0: it tells distances along its axis, as the VL53L5CX, VL53L7CX and VL53L8CX do.
+  // Anything else: distances to what was hit, of which the outer zones say more.
+  uint8_t is_radial;
+  // Angle in radians that its 8 columns, and its 8 rows, see together: above 0, up to
+  // pi/2. pi/4 for the VL53L5CX, pi/3 for the VL53L7CX.
+  float field_of_view;
+  // Distance up to which every obstacle gives a measurement, black ones too.
+  uint16_t max_range_mm;
+  // Where it points to, in radians from the robot's heading; grows from east to south.
+  float yaw;
+  // How far it points up, in radians, -pi/4 to pi/4: that of the mounting and of a body
+  // that tilts.
+  float pitch;
+  // How far it sits from the robot's middle, in the direction that it points to.
+  int16_t ahead_mm;
+  // How high it sits above the floor.
+  uint16_t height_mm;
+  // What lies lower may be the floor: below `height_mm`. Not less than the sensor's error
+  // there, and the error of the pitch times the range.
+  uint16_t floor_mm;
+  // What lies higher is not in the robot's way: above `height_mm`.
+  uint16_t top_mm;
+  // Side of a cell: that of the planner's configuration.
+  uint16_t cell_mm;
+} PlannerZoneSensor;
+
+// What one zone says.
+typedef struct {
+  // As the driver of a VL53L5CX, VL53L7CX or VL53L8CX tells it. 5 or 9: something is at
+  // `distance_mm`, if that is above 0. 255: nothing is within `max_range_mm`; that driver
+  // tells it if it is asked for the number of targets. Any other: no measurement, which
+  // says nothing.
+  uint8_t status;
+  // How far away.
+  int16_t distance_mm;
+} PlannerZone;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -543,8 +598,8 @@ PlannerResult planner_create(Planner *planner, size_t bytes, const PlannerConfig
 // Stack: 256 bytes.
 PlannerBearing planner_bearing(float radians);
 
-// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
-// most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
+// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor (by
+// `planner_zone_beams`). Work: at most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
 // `PLANNER_RESULT_OFF_GRID` changes nothing.
 //
 // `max_range`: distance in cells up to which every obstacle gives a measurement.
@@ -880,6 +935,29 @@ PlannerResult planner_voxel_status(PlannerVoxelSurvey *survey, PlannerVoxelStatu
 //
 // Stack: 256 bytes.
 PlannerResult planner_voxel_state(PlannerVoxelSurvey *survey, PlannerVoxel voxel, uint8_t *state);
+
+// Makes beams for `planner_observe_scan` of what a sensor with 8×8 zones measured: one for
+// each column, from left to right, from the robot's middle to the nearest thing that stands
+// between the floor and the robot's height. Writes [`PLANNER_ZONE_BEAMS`] of them into
+// `beams`, and how far they reach, in cells, into `max_range`. A scan with several sensors
+// takes the beams of all, and the least of their ranges.
+//
+// `zones` are [`PLANNER_ZONES`], row by row, the topmost row first and each from left to
+// right, as the robot sees them. In which order a driver gives them hangs on how the sensor
+// is mounted: hold a hand before its upper left corner.
+//
+// Zones that see the floor or what is too high are left out. A column without an obstacle is
+// free if one of its zones that see as far as `max_range` found nothing so far; else it says
+// nothing. What is lower than the robot can be missed: from afar it fills little of a zone.
+//
+// A result from `PLANNER_RESULT_ZONE_FIELD_OF_VIEW` on tells which value of `sensor` cannot
+// be; nothing is written then. Work: 18 sines and cosines, and 64 zones.
+//
+// Stack: 2048 bytes.
+PlannerResult planner_zone_beams(const PlannerZoneSensor *sensor,
+                                 const PlannerZone *zones,
+                                 PlannerBeam *beams,
+                                 float *max_range);
 
 #ifdef __cplusplus
 }  // extern "C"

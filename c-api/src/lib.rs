@@ -13,6 +13,7 @@ mod place;
 mod queries;
 mod types;
 mod voxels;
+mod zones;
 
 use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
 use planner_core::map::MOST_PLACES;
@@ -46,6 +47,9 @@ pub use voxels::{
     planner_voxel_create, planner_voxel_hear, planner_voxel_observe, planner_voxel_receive,
     planner_voxel_resume, planner_voxel_state, planner_voxel_status, planner_voxel_tick,
     planner_voxel_transmit,
+};
+pub use zones::{
+    PLANNER_ZONE_BEAMS, PLANNER_ZONES, PlannerZone, PlannerZoneSensor, planner_zone_beams,
 };
 
 use place::{create, fits, input, inputs, output, robot};
@@ -120,8 +124,8 @@ pub extern "C" fn planner_bearing(radians: f32) -> PlannerBearing {
     Bearing::from_radians(radians).into()
 }
 
-/// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor. Work: at
-/// most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
+/// Takes in a range scan: a lidar, a multi-ranger, an 8×8 time-of-flight sensor (by
+/// `planner_zone_beams`). Work: at most 32 cells a beam. Any result but `PLANNER_RESULT_OK` and
 /// `PLANNER_RESULT_OFF_GRID` changes nothing.
 ///
 /// `max_range`: distance in cells up to which every obstacle gives a measurement.

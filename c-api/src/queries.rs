@@ -216,7 +216,7 @@ fn text(code: usize, texts: &'static [&'static CStr]) -> *const c_char {
 }
 
 /// By [`PlannerResult`]. What Rust's `Display` says too begins with the same words.
-pub(crate) const RESULTS: [&CStr; 31] = [
+pub(crate) const RESULTS: [&CStr; 36] = [
     c"done",
     c"a pointer is null",
     c"a pointer is not aligned",
@@ -248,6 +248,11 @@ pub(crate) const RESULTS: [&CStr; 31] = [
     c"the grid was moved too often since the last stop",
     c"no such range",
     c"no such heading",
+    c"the field of view is not above 0 and up to pi/2",
+    c"the pitch is not between -pi/4 and pi/4",
+    c"the yaw is not finite",
+    c"the floor must end below the sensor, and the robot above it",
+    c"the largest range and the side of a cell must be above 0",
 ];
 
 /// By [`PlannerStop`](crate::PlannerStop), in the same words.

@@ -5,6 +5,7 @@ mod queries;
 mod radio;
 mod scans;
 mod voxels;
+mod zones;
 
 use std::ptr::{null, null_mut};
 

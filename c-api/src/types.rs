@@ -77,6 +77,16 @@ pub enum PlannerResult {
     Range = 29,
     /// The heading is above 7.
     Heading = 30,
+    /// The field of view of a sensor with zones is not above 0 and up to pi/2.
+    ZoneFieldOfView = 31,
+    /// Its pitch is not between -pi/4 and pi/4.
+    ZonePitch = 32,
+    /// Its yaw is not finite.
+    ZoneYaw = 33,
+    /// Not `floor_mm` < `height_mm` < `top_mm`.
+    ZoneHeights = 34,
+    /// Its largest range or the side of a cell is 0.
+    ZoneZero = 35,
 }
 
 impl From<MoveError> for PlannerResult {
@@ -508,6 +518,15 @@ impl From<Bearing> for PlannerBearing {
         Self {
             ahead: bearing.ahead(),
             right: bearing.right(),
+        }
+    }
+}
+
+impl From<Beam> for PlannerBeam {
+    fn from(Beam { bearing, range }: Beam) -> Self {
+        Self {
+            bearing: bearing.into(),
+            range,
         }
     }
 }

@@ -406,6 +406,50 @@ static void among_voxels(void) {
     free(survey);
 }
 
+// A sensor with zones whose values cannot be writes no beam; one with odd zones does.
+static void zones_become_beams(void) {
+    PlannerZoneSensor *front = malloc(sizeof *front);
+    PlannerZone *zones = malloc(PLANNER_ZONES * sizeof *zones);
+    PlannerBeam *beams = calloc(PLANNER_ZONE_BEAMS, sizeof *beams);
+    float *range = calloc(1, sizeof *range);
+    memset(zones, 0xa5, PLANNER_ZONES * sizeof *zones);
+    *front = (PlannerZoneSensor){.field_of_view = 0.785f, .max_range_mm = 1000, .height_mm = 80, .floor_mm = 30, .top_mm = 120, .cell_mm = 100};
+    PlannerZoneSensor usual = *front;
+    front->field_of_view = NAN;
+    CHECK(planner_zone_beams(front, zones, beams, range), PLANNER_RESULT_ZONE_FIELD_OF_VIEW);
+    *front = usual;
+    front->pitch = 1;
+    CHECK(planner_zone_beams(front, zones, beams, range), PLANNER_RESULT_ZONE_PITCH);
+    *front = usual;
+    front->yaw = INFINITY;
+    CHECK(planner_zone_beams(front, zones, beams, range), PLANNER_RESULT_ZONE_YAW);
+    *front = usual;
+    front->top_mm = 80;
+    CHECK(planner_zone_beams(front, zones, beams, range), PLANNER_RESULT_ZONE_HEIGHTS);
+    *front = usual;
+    front->cell_mm = 0;
+    CHECK(planner_zone_beams(front, zones, beams, range), PLANNER_RESULT_ZONE_ZERO);
+    CHECK(planner_zone_beams(NULL, zones, beams, range), PLANNER_RESULT_NULL);
+    CHECK(planner_zone_beams(&usual, NULL, beams, range), PLANNER_RESULT_NULL);
+    CHECK(planner_zone_beams(&usual, zones, NULL, range), PLANNER_RESULT_NULL);
+    CHECK(planner_zone_beams(&usual, zones, beams, NULL), PLANNER_RESULT_NULL);
+    CHECK(*range > 0 || beams[0].range > 0, false);
+    uint32_t random = 1;
+    for (int i = 0; i < 1000; i++) {
+        for (int zone = 0; zone < PLANNER_ZONES; zone++) {
+            random = random * 1103515245u + 12345u;
+            zones[zone].status = (random >> 16 & 1) ? 5 : (uint8_t)(random >> 24);
+            zones[zone].distance_mm = (int16_t)(random >> 8);
+        }
+        CHECK(planner_zone_beams(&usual, zones, beams, range), PLANNER_RESULT_OK);
+        CHECK(*range > 0, true);
+    }
+    free(range);
+    free(beams);
+    free(zones);
+    free(front);
+}
+
 int main(void) {
     Planner *planner = malloc(sizeof *planner);
     a_failed_create_changes_nothing(planner);
@@ -414,6 +458,7 @@ int main(void) {
     odd_frames(planner);
     maps_are_read(planner);
     among_voxels();
+    zones_become_beams();
     // Reasons by number, also those that do not exist.
     for (int stop = 0; stop < 256; stop++) {
         bool is_complete = stop == PLANNER_STOP_COMPLETE || stop == PLANNER_STOP_ENCLOSED

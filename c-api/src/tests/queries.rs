@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_char};
 
 use planner_core::radio::GridId;
+use planner_core::sight::ZoneError;
 
 use super::*;
 
@@ -258,6 +259,16 @@ fn words_begin_as_those_of_rust() {
         FrameError::Own,
         FrameError::SameId(RobotId(1)),
         FrameError::Field(Field::Goal),
+    ] {
+        let code = PlannerResult::from(error) as u8;
+        alike(read(planner_result_text(code)), &error.to_string());
+    }
+    for error in [
+        ZoneError::FieldOfView,
+        ZoneError::Pitch,
+        ZoneError::Yaw,
+        ZoneError::Heights,
+        ZoneError::Zero,
     ] {
         let code = PlannerResult::from(error) as u8;
         alike(read(planner_result_text(code)), &error.to_string());

@@ -1,19 +1,19 @@
 //! The lab: what is set, what runs, and what is shown.
 
+mod deeds;
+
 use host_sim::planners::PlannerKind;
 use host_sim::record::grid::Trace;
-use host_sim::scenario::{CellSpan, Conditions, Event, Faults};
+use host_sim::scenario::{Conditions, Faults};
 use host_sim::world::Starts;
-use planner_core::{Cell, RobotId};
 
 use crate::ground::{ALL_TICKS, Layers};
-use crate::maps;
 use crate::opened::Opened;
 use crate::platform::{Inbox, Stopwatch};
 use crate::playback::{Playback, Verdict};
 use crate::setup::Setup;
-use crate::survey::{SurveyScene, SurveySetup};
-use crate::view::{Camera, Deed, Tool, View};
+use crate::survey::{Rival, SurveyScene, SurveySetup, Turn};
+use crate::view::{Camera, Tool, View};
 use crate::watch::Watch;
 
 /// Time for ticks in a frame, in seconds: the rest of it is for drawing.
@@ -34,14 +34,18 @@ pub struct App {
     pub rival: Option<PlannerKind>,
     /// One run, or two in step.
     pub runs: Vec<Shown>,
-    /// The 3-D survey, if that is what is looked at.
-    pub survey: Option<SurveyScene>,
+    /// One 3-D survey, or two in step; none, if runs on a grid are looked at.
+    pub surveys: Vec<SurveyScene>,
+    /// What the second survey has otherwise.
+    pub survey_rival: Option<Rival>,
     /// Whether ticks go by.
     pub playing: bool,
     /// Ticks a second.
     pub speed: f32,
     /// What is drawn.
     pub layers: Layers,
+    /// What is drawn of surveys.
+    pub survey_layers: crate::survey::Layers,
     /// What the pointer does.
     pub tool: Tool,
     /// The robot that is looked at.
@@ -49,6 +53,7 @@ pub struct App {
     /// What the user should know.
     pub notice: Option<Notice>,
     pub(crate) camera: Camera,
+    pub(crate) turn: Turn,
     pub(crate) inbox: Inbox,
     pub(crate) path: String,
     pub(crate) sheet: Option<crate::panels::Sheet>,
@@ -101,14 +106,17 @@ impl App {
             setup: Setup::default(),
             rival: None,
             runs: Vec::new(),
-            survey: None,
+            surveys: Vec::new(),
+            survey_rival: None,
             playing: true,
             speed: 60.0,
             layers: Layers::default(),
+            survey_layers: Default::default(),
             tool: Tool::Look,
             selected: None,
             notice: None,
             camera: Camera::default(),
+            turn: Turn::default(),
             inbox: Inbox::default(),
             path: String::new(),
             sheet: None,
@@ -148,10 +156,14 @@ impl App {
     /// Runs the scenario of an address; a wrong one changes nothing but the notice.
     pub fn load(&mut self, address: &str) {
         if SurveySetup::is_meant(address) {
-            return match SurveySetup::from_address(address) {
-                Ok(setup) => self.fly(setup),
+            match SurveySetup::from_address(address) {
+                Ok(setup) => {
+                    self.survey_rival = None;
+                    self.fly(setup);
+                }
                 Err(error) => self.fail(error),
-            };
+            }
+            return;
         }
         self.rival = None;
         match Setup::from_address(address) {
@@ -160,62 +172,81 @@ impl App {
         }
     }
 
+    /// The 3-D survey that is looked at, of two the first.
+    pub fn survey(&self) -> Option<&SurveyScene> {
+        self.surveys.first()
+    }
+
     /// The part of an address behind `#` that shows what is looked at.
     pub fn address(&self) -> String {
-        match &self.survey {
+        match self.survey() {
             Some(survey) => survey.setup.address(),
             None => self.setup.address(),
         }
     }
 
-    /// Starts a survey; one that cannot be flown changes nothing but the notice.
-    pub fn fly(&mut self, setup: SurveySetup) {
-        self.fly_to(setup, None);
+    /// Starts a survey, with its rival if it has one; one that cannot be flown changes
+    /// nothing but the notice. Says whether it flies.
+    pub fn fly(&mut self, setup: SurveySetup) -> bool {
+        self.fly_to(setup, None)
     }
 
     /// As [`fly`](Self::fly), and goes on from a step.
-    fn fly_to(&mut self, setup: SurveySetup, step: Option<u32>) {
-        match SurveyScene::new(setup) {
-            Ok(mut scene) => {
-                if let Some(old) = &self.survey {
-                    scene.look_as(old);
-                }
-                self.watch(scene);
+    fn fly_to(&mut self, setup: SurveySetup, step: Option<u32>) -> bool {
+        let fits = |rival: &Rival| setup.rivals().contains(rival);
+        let rival = self.survey_rival.filter(fits);
+        let other = rival.map(|rival| setup.with(rival));
+        let wanted = std::iter::once(setup).chain(other);
+        match wanted.map(SurveyScene::new).collect() {
+            Ok(surveys) => {
+                self.survey_rival = rival;
+                self.watch(surveys);
                 self.target = step;
+                true
             }
-            Err(error) => self.fail(error),
+            Err(error) => {
+                self.fail(error);
+                false
+            }
         }
     }
 
-    fn watch(&mut self, scene: SurveyScene) {
-        let drones = usize::from(scene.setup.robots);
+    fn watch(&mut self, surveys: Vec<SurveyScene>) {
+        let drones = surveys.first().map(|survey| survey.setup.robots);
+        let drones = usize::from(drones.unwrap_or(0));
         self.selected = self.selected.filter(|&drone| drone < drones);
-        self.survey = Some(scene);
+        self.surveys = surveys;
         self.playing = true;
         self.notice = None;
         self.target = None;
         self.due = 0.0;
     }
 
+    /// Shows a trace of a survey that was opened.
+    fn watch_opened(&mut self, survey: SurveyScene) {
+        self.survey_rival = None;
+        self.watch(vec![survey]);
+    }
+
     /// Shows the explorations on the grid again.
     pub fn land(&mut self) {
-        self.survey = None;
+        self.surveys.clear();
         self.target = None;
         self.selected = None;
     }
 
-    /// What is played: a survey, or one or two runs on a grid in step.
+    /// What is played: one or two surveys, or one or two runs on a grid, in step.
     pub fn players(&self) -> Vec<&dyn Playback> {
-        match &self.survey {
-            Some(survey) => vec![survey],
-            None => self.runs.iter().map(|run| &run.watch as _).collect(),
+        match self.surveys.is_empty() {
+            false => self.surveys.iter().map(|survey| survey as _).collect(),
+            true => self.runs.iter().map(|run| &run.watch as _).collect(),
         }
     }
 
     fn players_mut(&mut self) -> Vec<&mut dyn Playback> {
-        match &mut self.survey {
-            Some(survey) => vec![survey],
-            None => self
+        match self.surveys.is_empty() {
+            false => self.surveys.iter_mut().map(|survey| survey as _).collect(),
+            true => self
                 .runs
                 .iter_mut()
                 .map(|run| &mut run.watch as _)
@@ -257,7 +288,7 @@ impl App {
         self.selected = self.selected.filter(|&robot| robot < robots);
         self.setup = setup;
         self.runs = runs;
-        self.survey = None;
+        self.surveys.clear();
         self.notice = None;
         self.target = tick;
         self.due = 0.0;
@@ -293,8 +324,8 @@ impl App {
                 });
             }
             Ok(Opened::Exploration(trace)) => self.replay(*trace),
-            Ok(Opened::Survey(trace)) => self.watch(SurveyScene::replay(*trace)),
-            Ok(Opened::Voxels(trace)) => self.watch(SurveyScene::replay_voxels(*trace)),
+            Ok(Opened::Survey(trace)) => self.watch_opened(SurveyScene::replay(*trace)),
+            Ok(Opened::Voxels(trace)) => self.watch_opened(SurveyScene::replay_voxels(*trace)),
             Err(error) => self.fail(error),
         }
     }
@@ -425,148 +456,17 @@ impl App {
 
     /// Runs what is set, from its first tick.
     pub fn run_again(&mut self) {
-        match &self.survey {
+        match self.survey() {
             Some(survey) => self.fly(survey.setup.clone()),
-            None => {
-                self.set(self.setup.clone());
-            }
-        }
+            None => self.set(self.setup.clone()),
+        };
     }
 
     /// Whether something moves without the user.
     pub fn is_busy(&self) -> bool {
         let waits = |run: &Shown| run.watch.state().is_none() && run.watch.differs().is_none();
-        let waits = self.survey.is_none() && self.runs.iter().any(waits);
+        let waits = self.surveys.is_empty() && self.runs.iter().any(waits);
         self.playing || self.target.is_some() || waits
-    }
-
-    /// Does what the pointer did in a view.
-    pub fn apply(&mut self, deed: Deed) {
-        match deed {
-            Deed::Selected(robot) => self.selected = robot,
-            Deed::Painted(cell) => self.paint(cell),
-            Deed::Placed(cell) => self.place(cell),
-            Deed::Dragged(robot, cell) => {
-                let mut starts = self.starts();
-                if let Some(start) = starts.get_mut(robot) {
-                    *start = cell;
-                }
-                self.set(Setup {
-                    starts: Some(Starts::At(starts)),
-                    ..self.setup.clone()
-                });
-            }
-            Deed::Killed(robot) => self.kill(robot),
-            Deed::Shut(cell) => self.shut(cell),
-        }
-    }
-
-    fn starts(&self) -> Vec<Cell> {
-        let run = self.runs.first();
-        run.map(|run| run.watch.scenario().starts.clone())
-            .unwrap_or_default()
-    }
-
-    /// Draws or erases a cell of wall; the runs begin anew.
-    fn paint(&mut self, cell: Cell) {
-        let Some(run) = self.runs.first() else { return };
-        let (world, blocked) = (run.watch.scenario().world.clone(), self.tool == Tool::Wall);
-        if world.is_free(cell) != blocked {
-            return;
-        }
-        let starts = self.starts();
-        if blocked && starts.contains(&cell) {
-            self.fail(format!("a robot starts at {cell}; move it first"));
-        } else if let Some(world) = maps::with_cell(&world, cell, blocked) {
-            let (camera, setup) = (self.camera, self.setup.with_world(world));
-            self.set(Setup {
-                starts: Some(Starts::At(starts)),
-                ..setup
-            });
-            self.camera = camera;
-        }
-    }
-
-    /// Adds a robot: before the first tick at its start, else from the shown tick on.
-    fn place(&mut self, cell: Cell) {
-        let tick = self.shown_tick();
-        let Some(robots) = self.setup.robots.checked_add(1) else {
-            return self.fail("there are 255 robots already, the most that there can be".into());
-        };
-        let mut starts = self.starts();
-        starts.push(cell);
-        let mut setup = Setup {
-            robots,
-            starts: Some(Starts::At(starts)),
-            ..self.setup.clone()
-        };
-        if tick > 0 {
-            let robot = RobotId(robots - 1);
-            setup.conditions.faults.arrivals.push(Event { robot, tick });
-        }
-        self.set_at(setup, (tick > 0).then_some(tick));
-    }
-
-    /// From the shown tick on, the robot is dead.
-    pub fn kill(&mut self, robot: usize) {
-        let Ok(id) = u8::try_from(robot) else { return };
-        self.befall(|faults, tick| {
-            let deaths = &mut faults.deaths;
-            deaths.retain(|death| death.robot.0 != id);
-            deaths.push(Event {
-                robot: RobotId(id),
-                tick,
-            });
-        });
-    }
-
-    /// Changes the faults from the shown tick on, whatever the world is, and goes on from
-    /// there; says whether it does.
-    fn befall(&mut self, change: impl FnOnce(&mut Faults, u32)) -> bool {
-        let tick = self.shown_tick();
-        if let Some(survey) = &self.survey {
-            let (mut setup, playing) = (survey.setup.clone(), self.playing);
-            change(&mut setup.conditions.faults, tick);
-            self.fly_to(setup, Some(tick));
-            self.playing = playing;
-            return self.target.is_some();
-        }
-        let mut setup = self.setup.clone();
-        change(&mut setup.conditions.faults, tick);
-        self.set_at(setup, Some(tick))
-    }
-
-    /// From the shown tick on, the cell is shut; if it is shut, open again.
-    fn shut(&mut self, cell: Cell) {
-        self.befall(|faults, tick| {
-            let spans = &mut faults.shut;
-            let holds = |of: &CellSpan| of.cell == cell && (of.from..of.until).contains(&tick);
-            match spans.iter().position(holds) {
-                Some(index) if spans[index].from == tick => drop(spans.remove(index)),
-                Some(index) => spans[index].until = tick,
-                None => spans.push(CellSpan {
-                    cell,
-                    from: tick,
-                    until: u32::MAX,
-                }),
-            }
-        });
-    }
-
-    /// From the shown tick on, the robot, or every one, goes on after its stop.
-    pub fn go_on(&mut self, robot: Option<usize>) {
-        let robots = match &self.survey {
-            Some(survey) => survey.setup.robots,
-            None => self.setup.robots,
-        };
-        let is_meant = |id: u8| robot.is_none_or(|robot| usize::from(id) == robot);
-        let goes_on = self.befall(|faults, tick| {
-            let resumes = &mut faults.resumes;
-            resumes.retain(|of| of.tick < tick || !is_meant(of.robot.0));
-            let meant = (0..robots).filter(|&id| is_meant(id)).map(RobotId);
-            resumes.extend(meant.map(|robot| Event { robot, tick }));
-        });
-        self.playing |= goes_on;
     }
 
     /// Reads what the page around the lab should know.

@@ -34,11 +34,34 @@ impl Export {
     ];
 }
 
+/// What is plotted of a run, tick by tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Series {
+    /// Share of what can be seen that has been seen, in per cent.
+    Seen,
+    /// Largest work of a robot in the tick.
+    Work,
+    /// Bytes that all robots have sent since the start.
+    Bytes,
+}
+
+impl Series {
+    /// All of them, with their names.
+    pub const ALL: [(Self, &'static str); 3] = [
+        (Self::Seen, "Cells seen, %"),
+        (Self::Work, "Largest work of a robot in a tick"),
+        (Self::Bytes, "Bytes sent by all robots"),
+    ];
+}
+
 /// A run on the screen, on a grid, over heights or among voxels. A tick is run once, and
 /// then remembered.
 pub trait Playback {
     /// The name of the place.
     fn name(&self) -> &str;
+
+    /// What tells it from another run in the same place.
+    fn title(&self) -> String;
 
     /// Shows the next tick, and runs it if it was not run yet; false if there is none.
     fn tick(&mut self) -> bool;
@@ -54,6 +77,9 @@ pub trait Playback {
 
     /// Share of what can be seen that was seen by the shown tick, in per cent.
     fn seen_percent(&self) -> f64;
+
+    /// Numbers of ticks done, and the value then.
+    fn curve(&self, of: Series) -> Vec<[f64; 2]>;
 
     /// How the run stands at its last tick.
     fn verdict(&self) -> Verdict;

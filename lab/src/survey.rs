@@ -3,6 +3,7 @@
 mod eye;
 mod flight;
 mod heights;
+mod rival;
 mod setup;
 mod sight;
 mod voxels;
@@ -14,14 +15,16 @@ use host_sim::record::voxels::VoxelTrace;
 use planner_core::{Point, RobotId};
 
 use crate::colors::{Colors, mix};
-use crate::playback::{Export, Playback, Verdict};
+use crate::playback::{Export, Playback, Series, Verdict};
 use crate::view::{Deed, Tool, lines};
-use eye::{Eye, Turn};
-use flight::Flight;
+use eye::Eye;
+use flight::{Cost, Flight};
 use heights::Heights;
 use voxels::Voxels;
 
+pub use eye::{SHAPE, Turn};
 pub use flight::{Drone, Layers};
+pub use rival::Rival;
 pub use setup::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
 
 /// How near to a drone a click means it, in points.
@@ -31,8 +34,6 @@ const NEAR: f32 = 14.0;
 pub struct SurveyScene {
     /// What was set for it; of a trace, as far as the menus reach.
     pub setup: SurveySetup,
-    /// What is drawn.
-    pub layers: Layers,
     flight: Box<dyn Flight>,
     /// Whether it is a trace that was opened.
     is_replay: bool,
@@ -42,7 +43,6 @@ pub struct SurveyScene {
     digest: Option<String>,
     /// Whose state is drawn: that after so many steps.
     shown: usize,
-    turn: Turn,
 }
 
 impl SurveyScene {
@@ -88,24 +88,13 @@ impl SurveyScene {
     fn with(setup: SurveySetup, flight: Box<dyn Flight>) -> Self {
         Self {
             setup,
-            layers: Layers::default(),
             flight,
             is_replay: false,
             is_repeatable: true,
             is_over: false,
             digest: None,
             shown: 0,
-            turn: Turn {
-                about: 0.7,
-                down: 0.75,
-                zoom: 1.0,
-            },
         }
-    }
-
-    /// Shows as much, from the same side, as another does.
-    pub fn look_as(&mut self, other: &Self) {
-        (self.layers, self.turn) = (other.layers, other.turn);
     }
 
     fn run_on(&mut self) {
@@ -125,11 +114,14 @@ impl SurveyScene {
         self.flight.levels()
     }
 
-    /// Share of what can be seen that has been seen after each step, in per cent.
-    pub fn curve(&self) -> impl Iterator<Item = f64> + '_ {
-        let all = f64::from(self.flight.all());
-        let seen = self.flight.seen().iter();
-        seen.map(move |&seen| 100.0 * f64::from(seen) / all)
+    /// Of the steps done: what is decided after the last look is not flown yet.
+    fn costs(&self) -> impl Iterator<Item = Cost> {
+        let steps = self.ticks() as usize;
+        self.flight.costs().into_iter().take(steps)
+    }
+
+    fn percent(&self, seen: u32) -> f64 {
+        100.0 * f64::from(seen) / f64::from(self.flight.all())
     }
 
     /// What should never happen, in words, and how many flights did it.
@@ -145,11 +137,17 @@ impl SurveyScene {
 
     /// Draws the scene over the room that is left; dragging turns it, the wheel zooms. Says
     /// what a click did.
-    pub fn view(&mut self, ui: &mut Ui, selected: Option<usize>, tool: Tool) -> Option<Deed> {
+    pub fn view(
+        &self,
+        ui: &mut Ui,
+        turn: &mut Turn,
+        layers: &Layers,
+        selected: Option<usize>,
+        tool: Tool,
+    ) -> Option<Deed> {
         let colors = Colors::of(ui);
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         let drag = response.drag_delta();
-        let turn = &mut self.turn;
         turn.about += drag.x * 0.008;
         turn.down = (turn.down + drag.y * 0.006).clamp(0.15, 1.5);
         if response.hovered() {
@@ -159,11 +157,11 @@ impl SurveyScene {
         }
         let eye = Eye::new(self.flight.extent(), *turn, rect);
         let painter = ui.painter_at(rect);
-        painter.add(self.flight.ground(self.shown, &eye, &self.layers, &colors));
-        if self.layers.ceiling && self.levels().is_none() {
+        painter.add(self.flight.ground(self.shown, &eye, layers, &colors));
+        if layers.ceiling && self.levels().is_none() {
             painter.add(self.ceiling(&eye, &colors));
         }
-        if self.layers.sensor {
+        if layers.sensor {
             painter.extend(self.sensors(&eye, &colors, selected));
         }
         painter.extend(self.drones(&eye, &colors, selected));
@@ -278,7 +276,34 @@ impl Playback for SurveyScene {
     }
 
     fn seen_percent(&self) -> f64 {
-        self.curve().nth(self.shown).unwrap_or(0.0)
+        let seen = self.flight.seen().get(self.shown);
+        seen.map_or(0.0, |&seen| self.percent(seen))
+    }
+
+    fn title(&self) -> String {
+        self.setup.title()
+    }
+
+    fn curve(&self, of: Series) -> Vec<[f64; 2]> {
+        let steps = (0..).map(f64::from);
+        match of {
+            Series::Seen => {
+                let seen = self.flight.seen().iter();
+                let seen = seen.map(|&seen| self.percent(seen));
+                steps.zip(seen).map(Into::into).collect()
+            }
+            Series::Work => {
+                let work = self.costs().map(|cost| cost.work.into());
+                steps.skip(1).zip(work).map(Into::into).collect()
+            }
+            Series::Bytes => {
+                let sent = self.costs().scan(0, |sent, cost| {
+                    *sent += cost.bytes;
+                    Some(*sent as f64)
+                });
+                steps.skip(1).zip(sent).map(Into::into).collect()
+            }
+        }
     }
 
     fn verdict(&self) -> Verdict {
@@ -354,7 +379,7 @@ mod tests {
                 }
             };
             assert_eq!(scene.digest(), Some(digest));
-            assert_eq!(scene.curve().last(), Some(100.0));
+            assert_eq!(scene.seen_percent(), 100.0);
             assert_eq!(scene.verdict(), Verdict::Complete);
         }
     }
@@ -398,7 +423,9 @@ mod tests {
             assert_eq!(replay.verdict(), Verdict::Complete);
             assert_eq!(replay.digest(), flown.digest());
             assert_eq!(replay.violations(), flown.violations());
-            assert!(replay.curve().eq(flown.curve()));
+            for (of, name) in Series::ALL {
+                assert_eq!(replay.curve(of), flown.curve(of), "{name}");
+            }
             while replay.tick() {}
             assert_eq!(replay.shown(), flown.ticks());
             let last = flown.ticks() as usize;

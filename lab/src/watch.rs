@@ -14,7 +14,7 @@ use host_sim::world::Reachable;
 use planner_core::Cell;
 
 use crate::export;
-use crate::playback::{Export, Playback, Verdict};
+use crate::playback::{Export, Playback, Series, Verdict};
 
 /// What nobody has seen.
 pub const NEVER: u32 = u32::MAX;
@@ -346,6 +346,10 @@ impl Playback for Watch {
         self.scenario.world.name()
     }
 
+    fn title(&self) -> String {
+        self.scenario.planner.to_string()
+    }
+
     fn tick(&mut self) -> bool {
         if self.shown < self.ticks() {
             self.shown += 1;
@@ -409,6 +413,18 @@ impl Playback for Watch {
     fn seen_percent(&self) -> f64 {
         let all = self.reachable.count().max(1);
         100.0 * f64::from(self.seen_cells()) / f64::from(all)
+    }
+
+    fn curve(&self, of: Series) -> Vec<[f64; 2]> {
+        let all = f64::from(self.reachable.count().max(1));
+        let value = |point: &Point| match of {
+            Series::Seen => 100.0 * f64::from(point.seen) / all,
+            Series::Work => point.work.into(),
+            Series::Bytes => point.bytes as f64,
+        };
+        let ticks = (1..).map(f64::from);
+        let values = self.history.series.iter().map(value);
+        ticks.zip(values).map(Into::into).collect()
     }
 
     fn export(&self, what: Export) -> Result<(&'static str, Vec<u8>), String> {

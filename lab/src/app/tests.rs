@@ -1,7 +1,9 @@
+use host_sim::scene::Sensor;
 use planner_core::Direction;
 
 use super::*;
 use crate::playback::Export;
+use crate::view::Deed;
 use crate::watch::Obstruction;
 
 fn app() -> App {
@@ -119,7 +121,7 @@ fn a_drone_killed_on_screen_is_killed_by_the_command() {
         assert_eq!(app.address(), format!("{address}&kill=1@6"));
         arrive(&mut app);
         assert_eq!((app.shown_tick(), app.playing), (6, false));
-        let drone = app.survey.as_ref().unwrap().drone(1);
+        let drone = app.surveys[0].drone(1);
         assert!(!drone.is_alive, "{drone:?}");
         finish(&mut app);
         assert_eq!(app.report().state, "complete", "{address}");
@@ -193,6 +195,44 @@ fn two_planners_go_in_step() {
 }
 
 #[test]
+fn surveys_go_in_step_and_what_befalls_one_befalls_both() {
+    let address = "terrain=town:2&size=24&robots=2";
+    let mut app = App::from_address(address);
+    app.playing = false;
+    let alone = {
+        let mut app = App::from_address(address);
+        finish(&mut app);
+        app.report().digest
+    };
+    app.survey_rival = Some(Rival::Sensor(Sensor::Downward));
+    let setup = app.surveys[0].setup.clone();
+    assert!(app.fly(setup));
+    for _ in 0..8 {
+        app.tick();
+    }
+    let shown = |app: &App| -> Vec<u32> {
+        let players = app.players().into_iter();
+        players.map(|player| player.shown()).collect()
+    };
+    assert_eq!(shown(&app), [8, 8]);
+    let mut both = App::from_address(address);
+    both.survey_rival = app.survey_rival;
+    both.fly(app.surveys[0].setup.clone());
+    finish(&mut both);
+    assert_eq!(both.report().state, "complete");
+    // That there is another changes nothing of the first.
+    assert_eq!(both.report().digest, alone);
+    app.kill(1);
+    arrive(&mut app);
+    assert_eq!(shown(&app), [8, 8]);
+    let lives = app.surveys.iter().map(|survey| survey.drone(1).is_alive);
+    assert_eq!(lives.collect::<Vec<_>>(), [false, false]);
+    // An address, or a trace, comes alone.
+    app.load(address);
+    assert_eq!((app.surveys.len(), app.survey_rival), (1, None));
+}
+
+#[test]
 fn bad_files_are_refused_with_a_sentence_and_change_nothing() {
     let mut app = app();
     let before = app.setup.clone();
@@ -250,13 +290,7 @@ fn a_saved_survey_is_replayed_and_flown_again() {
         let mut app = App::from_address(address);
         finish(&mut app);
         let digest = app.report().digest;
-        let bytes = app
-            .survey
-            .as_ref()
-            .unwrap()
-            .export(Export::Trace)
-            .unwrap()
-            .1;
+        let bytes = app.surveys[0].export(Export::Trace).unwrap().1;
         let mut other = App::new(Setup::default());
         other.open("trace.csv", &bytes);
         let replayed = other.report();
@@ -270,11 +304,11 @@ fn a_saved_survey_is_replayed_and_flown_again() {
         let elsewhere = String::from_utf8(bytes).unwrap();
         let elsewhere = elsewhere.replacen("\"name\":\"", "\"name\":\"old-", 1);
         other.open("trace.csv", elsewhere.as_bytes());
-        let survey = other.survey.as_ref().unwrap();
+        let survey = &other.surveys[0];
         assert!(survey.is_replay() && !survey.is_repeatable());
         other.fly(survey.setup.clone());
         assert!(other.report().error.contains("only in the trace"));
-        assert!(other.survey.as_ref().unwrap().is_replay());
+        assert!(other.surveys[0].is_replay());
     }
 }
 

@@ -27,7 +27,7 @@ impl App {
             }
         });
         let (is_replay, digest) = (player.is_replay(), player.digest());
-        let (command, is_repeatable) = match &self.survey {
+        let (command, is_repeatable) = match self.survey() {
             Some(survey) => (survey.setup.command(), survey.is_repeatable()),
             None => (self.setup.command(), true),
         };
@@ -40,7 +40,7 @@ impl App {
             };
             let copies = button(ui, "Copy command").on_hover_text(&command);
             if copies.clicked() {
-                let needs_map = self.survey.is_none() && matches!(self.setup.map, Map::Given(_));
+                let needs_map = self.survey().is_none() && matches!(self.setup.map, Map::Given(_));
                 done = Some(Ok(match needs_map {
                     true => "copied; save the map (button Map) beside it".to_owned(),
                     false => "copied".to_owned(),

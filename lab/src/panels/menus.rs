@@ -10,7 +10,7 @@ use planner_core::Extent;
 use planner_core::explorer::MAX_CLEARANCE;
 use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 
-use super::parts::{choice, events, files, medium, number, title};
+use super::parts::{choice, events, files, medium, number, rival, title};
 use crate::app::App;
 use crate::ground::ALL_TICKS;
 use crate::maps::Map;
@@ -19,7 +19,7 @@ use crate::view::Tool;
 
 impl App {
     pub(super) fn menus(&mut self, ui: &mut Ui) {
-        if self.survey.is_some() {
+        if self.survey().is_some() {
             return self.survey_menus(ui);
         }
         let before = (self.setup.clone(), self.rival);
@@ -40,7 +40,7 @@ impl App {
         if !setup.planner.has_body() {
             setup.clearance = 0;
         }
-        self.rival(ui);
+        rival(ui, &mut self.rival, PlannerKind::value_variants());
         title(ui, "Radio");
         radio(ui, &mut setup.conditions);
         CollapsingHeader::new("A world that misleads")
@@ -121,20 +121,6 @@ impl App {
                 ..setup.clone()
             };
         }
-    }
-
-    fn rival(&mut self, ui: &mut Ui) {
-        let name = self
-            .rival
-            .map_or("nothing".to_owned(), |rival| rival.to_string());
-        ComboBox::from_label("compare with")
-            .selected_text(name)
-            .show_ui(ui, |ui| {
-                ui.selectable_value(&mut self.rival, None, "nothing");
-                for &planner in PlannerKind::value_variants() {
-                    ui.selectable_value(&mut self.rival, Some(planner), planner.to_string());
-                }
-            });
     }
 
     fn tools(&mut self, ui: &mut Ui) {

@@ -9,14 +9,14 @@ mod plots;
 mod robot;
 mod survey_menus;
 mod time;
+mod views;
 
 use egui::{CentralPanel, Frame, Key, Margin, Panel, RichText, ScrollArea, Theme, Ui};
 
 use crate::app::App;
 use crate::colors::Colors;
-use crate::ground::Subject;
-use crate::playback::{Playback, Verdict};
-use crate::view;
+use crate::playback::Verdict;
+use crate::survey::SurveySetup;
 
 /// Narrower screens show one thing at a time.
 const NARROW: f32 = 820.0;
@@ -88,12 +88,12 @@ impl App {
                 ui.label(RichText::new("Exploration lab").strong());
             }
             ui.separator();
-            let flies = self.survey.is_some();
+            let flies = self.survey().is_some();
             if ui.selectable_label(!flies, "2-D").clicked() && flies {
                 self.land();
             }
             if ui.selectable_label(flies, "3-D survey").clicked() && !flies {
-                self.fly(Default::default());
+                self.fly(SurveySetup::default());
             }
             self.examples(ui);
             if !is_narrow {
@@ -128,7 +128,7 @@ impl App {
             Verdict::Incomplete => ": over, not complete",
         };
         let (name, seen) = (player.name(), player.seen_percent());
-        let all = match (&self.survey, self.runs.first()) {
+        let all = match (self.survey(), self.runs.first()) {
             (None, Some(run)) => format!("{} cells", run.watch.reachable().count()),
             _ => "the ground".to_owned(),
         };
@@ -163,114 +163,12 @@ impl App {
     }
 
     fn details(&mut self, ui: &mut Ui) {
-        if self.survey.is_some() {
-            self.drone(ui);
-            self.survey_plots(ui);
-        } else {
-            self.robot(ui);
-            self.plots(ui);
+        match self.survey().is_some() {
+            true => self.drone(ui),
+            false => self.robot(ui),
         }
-    }
-
-    /// Known map and real world of one run, or the known maps of two.
-    fn views(&mut self, ui: &mut Ui, is_narrow: bool) {
-        if let Some(survey) = &mut self.survey {
-            if let Some(deed) = survey.view(ui, self.selected, self.tool) {
-                self.apply(deed);
-            }
-            return;
-        }
-        let known = self.selected.map_or(Subject::Team, Subject::Robot);
-        let mut wanted = Vec::new();
-        for index in 0..self.runs.len() {
-            match self.runs.len() {
-                1 if is_narrow && self.shows_world => wanted.push((index, Subject::World)),
-                1 if is_narrow => wanted.push((index, known)),
-                1 => wanted.extend([(index, known), (index, Subject::World)]),
-                _ => wanted.push((
-                    index,
-                    if self.shows_world {
-                        Subject::World
-                    } else {
-                        known
-                    },
-                )),
-            }
-        }
-        if is_narrow || self.runs.len() > 1 {
-            ui.horizontal(|ui| {
-                ui.selectable_value(&mut self.shows_world, false, "known map");
-                ui.selectable_value(&mut self.shows_world, true, "real world");
-            });
-        }
-        let (count, room) = (wanted.len() as f32, ui.available_size());
-        let gap = ui.spacing().item_spacing;
-        // Beside each other or one above the other: as the maps get larger.
-        let extent = self
-            .runs
-            .first()
-            .map(|run| run.watch.scenario().world.extent());
-        let side = |room: egui::Vec2| {
-            extent.map_or(0.0, |extent| {
-                (room.x / f32::from(extent.width)).min((room.y - 20.0) / f32::from(extent.height))
-            })
-        };
-        let stacked =
-            side(egui::vec2(room.x, room.y / count)) > side(egui::vec2(room.x / count, room.y));
-        let size = match stacked {
-            true => egui::vec2(room.x, (room.y - gap.y * (count - 1.0)) / count),
-            false => egui::vec2((room.x - gap.x * (count - 1.0)) / count, room.y),
-        };
-        let layout = match stacked {
-            true => egui::Layout::top_down(egui::Align::Min),
-            false => egui::Layout::left_to_right(egui::Align::Min),
-        };
-        let mut deed = None;
-        ui.with_layout(layout, |ui| {
-            for (index, subject) in wanted {
-                let inner = egui::Layout::top_down(egui::Align::Min);
-                ui.allocate_ui_with_layout(size, inner, |ui| {
-                    deed = self.view(ui, index, subject).or(deed.take());
-                });
-            }
-        });
-        if let Some(deed) = deed {
-            self.apply(deed);
-        }
-    }
-
-    fn view(&mut self, ui: &mut Ui, index: usize, subject: Subject) -> Option<view::Deed> {
-        let is_pair = self.runs.len() > 1;
-        let run = self.runs.get_mut(index)?;
-        let watch = &run.watch;
-        let mut title = match subject {
-            Subject::World => "Real world and ways".to_owned(),
-            Subject::Team => "What the robots have seen".to_owned(),
-            Subject::Robot(robot) if watch.state().is_some() => format!("What robot {robot} knows"),
-            Subject::Robot(_) if watch.differs().is_some() => "What the robots have seen".into(),
-            Subject::Robot(robot) => format!("Working out what robot {robot} knew …"),
-        };
-        if is_pair {
-            let all = watch.reachable().count().max(1);
-            let seen = 100.0 * f64::from(watch.seen_cells()) / f64::from(all);
-            title = format!("{}: {seen:.1} %, tick {}", run.setup.planner, watch.shown());
-        }
-        ui.label(RichText::new(title).strong());
-        let second = usize::from(subject == Subject::World);
-        let [one, two] = &mut run.views;
-        let view = if second == 1 { two } else { one };
-        view.show(
-            ui,
-            &mut self.camera,
-            &view::Frame {
-                watch,
-                run: run.id,
-                subject,
-                layers: &self.layers,
-                selected: self.selected,
-                tool: self.tool,
-            },
-        )
+        self.plots(ui);
+        self.violations(ui);
     }
 
     /// What the keys of [`KEYS`] do.

@@ -43,6 +43,19 @@ pub(super) fn choice<T: ValueEnum + PartialEq + Copy + ToString>(
         });
 }
 
+/// What is run beside the first, if anything is.
+pub(super) fn rival<T: PartialEq + Copy + ToString>(ui: &mut Ui, rival: &mut Option<T>, all: &[T]) {
+    let name = rival.map_or("nothing".to_owned(), |rival| rival.to_string());
+    ComboBox::from_label("compare with")
+        .selected_text(name)
+        .show_ui(ui, |ui| {
+            ui.selectable_value(rival, None, "nothing");
+            for &other in all {
+                ui.selectable_value(rival, Some(other), other.to_string());
+            }
+        });
+}
+
 /// A way in for maps and traces.
 pub(super) fn files(ui: &mut Ui, inbox: &Inbox, path: &mut String) {
     ui.horizontal(|ui| {

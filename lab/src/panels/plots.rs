@@ -5,68 +5,37 @@ use egui_plot::{
     AxisHints, Corner, GridInput, Legend, Line, Plot, PlotPoints, VLine, uniform_grid_spacer,
 };
 
-use crate::app::{App, Shown};
+use crate::app::App;
 use crate::colors::Colors;
-use crate::playback::Playback;
-use crate::watch::Point;
+use crate::playback::Series;
 
 /// Points on a curve at most: one for each of the panel's pixels, about.
 const POINTS: usize = 240;
 
-/// What a plot draws of a tick; the second argument is the number of cells in all.
-type Value = fn(&Point, u32) -> f64;
-
-const PLOTS: [(&str, Value); 3] = [
-    ("Cells seen, %", |point, all| {
-        100.0 * f64::from(point.seen) / f64::from(all.max(1))
-    }),
-    ("Largest work of a robot in a tick", |point, _| {
-        point.work.into()
-    }),
-    ("Bytes sent by all robots", |point, _| point.bytes as f64),
-];
-
 impl App {
+    /// The curves of all that is played, those of one kind in one plot.
     pub(super) fn plots(&mut self, ui: &mut Ui) {
         let colors = Colors::of(ui);
-        let shown = self.shown_tick();
-        for (place, (title, value)) in PLOTS.into_iter().enumerate() {
-            ui.label(RichText::new(title).strong());
-            let mut plot = small(title);
-            if self.runs.len() > 1 && place == 0 {
+        let (shown, players) = (self.shown_tick(), self.players());
+        for (of, name) in Series::ALL {
+            let name = match of {
+                Series::Seen if self.survey().is_some() => "Ground seen, %",
+                _ => name,
+            };
+            ui.label(RichText::new(name).strong());
+            let mut plot = small(name);
+            if players.len() > 1 && of == Series::Seen {
                 plot = plot.legend(Legend::default().position(Corner::LeftTop));
             }
             plot.show(ui, |plot| {
-                for (index, run) in self.runs.iter().enumerate() {
-                    let color = colors.robot(index);
-                    let line = Line::new(run.setup.planner.to_string(), curve(run, value));
-                    plot.line(line.stroke(Stroke::new(2.0, color)));
+                for (index, player) in players.iter().enumerate() {
+                    let line = Line::new(player.title(), thinned(&player.curve(of)));
+                    plot.line(line.stroke(Stroke::new(2.0, colors.robot(index))));
                 }
                 let now = VLine::new("", f64::from(shown));
                 plot.vline(now.stroke(Stroke::new(1.0, colors.ink)));
             });
         }
-    }
-
-    pub(super) fn survey_plots(&mut self, ui: &mut Ui) {
-        let Some(survey) = &self.survey else { return };
-        let colors = Colors::of(ui);
-        ui.label(RichText::new("Ground seen, %").strong());
-        let points: Vec<[f64; 2]> = (0..)
-            .map(f64::from)
-            .zip(survey.curve())
-            .map(Into::into)
-            .collect();
-        small("ground").show(ui, |plot| {
-            let line = Line::new("seen", PlotPoints::from(points));
-            plot.line(line.stroke(Stroke::new(2.0, colors.robot(0))));
-            let now = VLine::new("", f64::from(survey.shown()));
-            plot.vline(now.stroke(Stroke::new(1.0, colors.ink)));
-        });
-        ui.label(match survey.violations() {
-            (wrong, 0) => format!("No flight was {wrong}."),
-            (wrong, flights) => format!("{flights} flights were {wrong}."),
-        });
     }
 }
 
@@ -103,18 +72,12 @@ fn steps(input: GridInput) -> [f64; 3] {
     [step; 3]
 }
 
-fn curve(run: &Shown, value: Value) -> PlotPoints<'static> {
-    let (series, all) = (run.watch.series(), run.watch.reachable().count());
-    // Of several ticks, the largest value: no peak is lost.
-    let each = series.len().div_ceil(POINTS).max(1);
-    let points = series.chunks(each).zip((1..).step_by(each));
-    points
-        .map(|(ticks, first)| {
-            let largest = ticks
-                .iter()
-                .map(|point| value(point, all))
-                .fold(0.0, f64::max);
-            [f64::from(first) + ticks.len() as f64 - 1.0, largest]
-        })
-        .collect()
+/// Of several ticks, the largest value: no peak is lost.
+fn thinned(curve: &[[f64; 2]]) -> PlotPoints<'static> {
+    let each = curve.len().div_ceil(POINTS).max(1);
+    let largest = |ticks: &[[f64; 2]]| {
+        let value = ticks.iter().map(|point| point[1]).fold(0.0, f64::max);
+        ticks.last().map(|last| [last[0], value])
+    };
+    curve.chunks(each).filter_map(largest).collect()
 }

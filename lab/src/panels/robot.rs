@@ -108,7 +108,9 @@ impl App {
 impl App {
     /// The drone that was clicked.
     pub(super) fn drone(&mut self, ui: &mut Ui) {
-        let Some(survey) = &self.survey else { return };
+        let Some(survey) = self.surveys.first() else {
+            return;
+        };
         let drones = usize::from(survey.setup.robots);
         choose(ui, &mut self.selected, "drone", drones);
         let chosen = self.selected.filter(|&drone| drone < drones);
@@ -136,6 +138,22 @@ impl App {
             self.go_on(chosen);
         }
         ui.separator();
+    }
+}
+
+impl App {
+    /// Whether drones flew where they should not have, of each survey.
+    pub(super) fn violations(&self, ui: &mut Ui) {
+        for survey in &self.surveys {
+            let told = match survey.violations() {
+                (wrong, 0) => format!("No flight was {wrong}."),
+                (wrong, flights) => format!("{flights} flights were {wrong}."),
+            };
+            ui.label(match self.surveys.len() {
+                1 => told,
+                _ => format!("{}: {told}", survey.title()),
+            });
+        }
     }
 }
 

@@ -9,17 +9,19 @@ use host_sim::scenario::voxels;
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
-use super::parts::{choice, events, files, medium, number, slider, title};
+use super::parts::{choice, events, files, medium, number, rival, slider, title};
 use crate::app::App;
 use crate::survey::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
 use crate::view::Tool;
 
 impl App {
     pub(super) fn survey_menus(&mut self, ui: &mut Ui) {
-        let Some(survey) = &mut self.survey else {
+        let Some(survey) = self.survey() else {
             return;
         };
-        let mut setup = survey.setup.clone();
+        let levels = survey.levels();
+        let before = (survey.setup.clone(), self.survey_rival);
+        let mut setup = before.0.clone();
         title(ui, "Terrain");
         terrain(ui, &mut setup);
         files(ui, &self.inbox, &mut self.path);
@@ -38,6 +40,7 @@ impl App {
             slider(ui, "least altitude", &mut setup.min_altitude, ALTITUDES);
             slider(ui, "ceiling", &mut setup.ceiling, CEILINGS);
         }
+        rival(ui, &mut self.survey_rival, &setup.rivals());
         ui.horizontal(|ui| {
             number(
                 ui,
@@ -49,8 +52,7 @@ impl App {
         title(ui, "Radio");
         medium(ui, &mut setup.conditions);
         title(ui, "View");
-        let levels = survey.levels();
-        let layers = &mut survey.layers;
+        let layers = &mut self.survey_layers;
         ui.checkbox(&mut layers.hidden, "ground that was not seen");
         ui.checkbox(&mut layers.sensor, "sensor");
         match levels {
@@ -77,8 +79,8 @@ impl App {
         };
         ui.label(RichText::new(hint).weak());
         let setup = setup.tidied();
-        if setup != survey.setup {
-            self.fly(setup);
+        if (&setup, self.survey_rival) != (&before.0, before.1) && !self.fly(setup) {
+            self.survey_rival = before.1;
         }
         title(ui, "Export");
         self.exports(ui);

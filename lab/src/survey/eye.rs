@@ -5,15 +5,28 @@ use planner_core::{Extent, Point};
 
 use crate::colors::mix;
 
-/// How the user has turned the scene.
+/// Width and height of the room that a scene takes whose diagonal is one long.
+pub const SHAPE: Vec2 = vec2(1.0, 0.85);
+
+/// How the user has turned the scene; the same for all that are beside each other.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
+pub struct Turn {
     /// About the vertical, in radians.
     pub(super) about: f32,
     /// How steeply one looks down, in radians.
     pub(super) down: f32,
     /// How much larger than fitting.
     pub(super) zoom: f32,
+}
+
+impl Default for Turn {
+    fn default() -> Self {
+        Self {
+            about: 0.7,
+            down: 0.75,
+            zoom: 1.0,
+        }
+    }
 }
 
 /// Turned about the middle of the scene, without perspective.
@@ -31,7 +44,8 @@ pub(super) struct Eye {
 impl Eye {
     pub(super) fn new(extent: Extent, turn: Turn, rect: Rect) -> Self {
         let size = vec2(extent.width.into(), extent.height.into());
-        let fitting = (rect.width() / (size.length())).min(rect.height() / (size.length() * 0.85));
+        let room = SHAPE * size.length();
+        let fitting = (rect.width() / room.x).min(rect.height() / room.y);
         Self {
             middle: size / 2.0,
             centre: rect.center() + vec2(0.0, rect.height() * 0.05),

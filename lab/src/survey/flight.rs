@@ -58,6 +58,9 @@ pub(super) trait Flight {
     /// What should never happen, in words, and how many flights did it.
     fn violations(&self) -> (&'static str, u32);
 
+    /// What each step took.
+    fn costs(&self) -> Vec<Cost>;
+
     /// The digest of the trace.
     fn digest(&self) -> String;
 
@@ -99,6 +102,31 @@ pub(super) trait Flight {
 
     /// What a drone did in the last of so many steps.
     fn drone(&self, drone: usize, steps: u32) -> Drone;
+}
+
+/// What a step took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Cost {
+    /// Largest work of a drone.
+    pub(super) work: u32,
+    /// Bytes that all drones sent.
+    pub(super) bytes: u64,
+}
+
+impl Cost {
+    /// Of each step in which somebody decided.
+    pub(super) fn of<K: Kind>(records: &[Record<K>]) -> Vec<Self> {
+        let mut costs = Vec::new();
+        for record in records {
+            let step = record.tick as usize;
+            if costs.len() <= step {
+                costs.resize(step + 1, Self::default());
+            }
+            costs[step].work = costs[step].work.max(record.work);
+            costs[step].bytes += u64::from(record.sent.bytes);
+        }
+        costs
+    }
 }
 
 /// A drone at the shown step.

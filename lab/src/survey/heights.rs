@@ -14,7 +14,7 @@ use planner_core::{Cell, Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
-use super::flight::{Drone, Flight, Layers, shade};
+use super::flight::{Cost, Drone, Flight, Layers, shade};
 use super::sight::Sight;
 use crate::colors::Colors;
 
@@ -111,6 +111,10 @@ impl Flight for Heights {
     fn violations(&self) -> (&'static str, u32) {
         let count = self.trace().safety.violations();
         ("too low, too high or too near to another", count)
+    }
+
+    fn costs(&self) -> Vec<Cost> {
+        Cost::of(&self.trace().records)
     }
 
     fn digest(&self) -> String {

@@ -12,7 +12,7 @@ use planner_core::{Extent, Point};
 
 use super::SurveySetup;
 use super::eye::{Blocks, Eye};
-use super::flight::{Drone, Flight, Layers, shade};
+use super::flight::{Cost, Drone, Flight, Layers, shade};
 use super::sight::{self, Sight};
 use crate::colors::Colors;
 
@@ -116,6 +116,10 @@ impl Flight for Voxels {
     fn violations(&self) -> (&'static str, u32) {
         let count = self.trace().violations;
         ("beside or into something", count)
+    }
+
+    fn costs(&self) -> Vec<Cost> {
+        Cost::of(&self.trace().records)
     }
 
     fn digest(&self) -> String {

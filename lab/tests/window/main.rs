@@ -13,6 +13,7 @@ use host_sim::scenario::voxels;
 use host_sim::terrain::TerrainSource;
 use lab::App;
 use lab::playback::{Export, Playback};
+use lab::survey::Rival;
 use painter::Painter;
 
 fn harness(address: &str, width: f32, height: f32, theme: Theme) -> Harness<'static, App> {
@@ -123,10 +124,10 @@ fn a_town_of_voxels_is_chosen_looked_into_and_shared() {
     harness.state_mut().playing = false;
     let shown = harness.state().shown_tick();
     play(&mut harness, 150 - shown);
-    harness.state_mut().survey.as_mut().unwrap().layers.levels = 12;
+    harness.state_mut().survey_layers.levels = 12;
     harness.run();
     compare(&mut harness, "town");
-    let setup = harness.state().survey.as_ref().unwrap().setup.clone();
+    let setup = harness.state().survey().unwrap().setup.clone();
     assert!(setup.is_of_voxels());
     assert_eq!(copied(&mut harness, "Copy command"), setup.command());
     let address = "#terrain=town:1&size=40&robots=3";
@@ -140,7 +141,7 @@ fn cameras_in_a_town_of_voxels() {
     let address = "terrain=town:1&size=40&robots=3&sensor=camera";
     let mut laptop = harness(address, 1280.0, 800.0, Theme::Dark);
     laptop.state_mut().selected = Some(1);
-    laptop.state_mut().survey.as_mut().unwrap().layers.levels = 12;
+    laptop.state_mut().survey_layers.levels = 12;
     play(&mut laptop, 150);
     compare(&mut laptop, "camera");
     laptop.get_by_label("turned to the");
@@ -171,7 +172,7 @@ fn a_trace_beyond_the_menus_is_not_flown_anew() {
         harness.run();
         let report = harness.state().report();
         assert_eq!((report.error.as_str(), report.digest), ("", digest));
-        assert!(harness.state().survey.as_ref().unwrap().is_replay());
+        assert!(harness.state().survey().unwrap().is_replay());
     }
 }
 
@@ -183,7 +184,7 @@ fn traces_of_surveys_are_dropped_played_and_scrubbed() {
     ] {
         let mut flown = App::from_address(address);
         while flown.tick() {}
-        let survey = flown.survey.as_ref().unwrap();
+        let survey = flown.survey().unwrap();
         let (_, file) = survey.export(Export::Trace).unwrap();
         let steps = survey.ticks();
         let mut harness = harness("map=circle", 1280.0, 900.0, Theme::Light);
@@ -205,7 +206,7 @@ fn traces_of_surveys_are_dropped_played_and_scrubbed() {
         harness.get_by_label("Restart").click();
         harness.step();
         let state = harness.state();
-        assert!(state.playing && state.survey.as_ref().unwrap().is_replay());
+        assert!(state.playing && state.survey().unwrap().is_replay());
     }
 }
 
@@ -241,7 +242,7 @@ fn a_survey_comes_by_address_is_gone_back_through_and_shared() {
         let state = harness.state();
         assert_eq!((state.shown_tick(), state.last_tick()), (shown, 12));
     }
-    let setup = harness.state().survey.as_ref().unwrap().setup.clone();
+    let setup = harness.state().survey().unwrap().setup.clone();
     assert_eq!(copied(&mut harness, "Copy command"), setup.command());
     assert_eq!(copied(&mut harness, "Copy address"), format!("#{address}"));
     while harness.state_mut().tick() {}
@@ -269,6 +270,57 @@ fn two_planners_side_by_side() {
     harness.state_mut().set(setup);
     play(&mut harness, 200);
     compare(&mut harness, "side-by-side");
+}
+
+/// Two sensors in one town, and two planners over one terrain, go in step: one plot has both
+/// curves, and the wheel and the pointer turn both.
+#[test]
+fn surveys_side_by_side() {
+    let address = "terrain=town:1&size=40&robots=3";
+    let mut laptop = harness(address, 1280.0, 800.0, Theme::Light);
+    laptop.state_mut().survey_layers.levels = 12;
+    laptop.run();
+    choose(&mut laptop, "compare with", "camera");
+    let shown = laptop.state().shown_tick();
+    play(&mut laptop, 100 - shown);
+    compare(&mut laptop, "surveys-side-by-side");
+    let titles = |app: &App| -> Vec<String> {
+        let players = app.players().into_iter();
+        players.map(|player| player.title()).collect()
+    };
+    let expected = ["voxel-survey", "voxel-survey, camera"];
+    assert_eq!(titles(laptop.state()), expected);
+    assert_eq!(copied(&mut laptop, "Copy address"), format!("#{address}"));
+    laptop.run();
+    // Over hills there is no camera to compare with.
+    laptop.get_by_label("hills").click();
+    laptop.step();
+    assert_eq!(titles(laptop.state()), ["coordinated-survey"]);
+    laptop.run_steps(2);
+    choose(&mut laptop, "compare with", "greedy");
+    assert_eq!(titles(laptop.state()), ["coordinated-survey", "greedy"]);
+    choose(&mut laptop, "compare with", "nothing");
+    assert_eq!(titles(laptop.state()), ["coordinated-survey"]);
+
+    let address = "terrain=urban:3&size=40";
+    let mut phone = harness(address, 390.0, 780.0, Theme::Dark);
+    let setup = phone.state().survey().unwrap().setup.clone();
+    let greedy = host_sim::scenario::heights::Planner::Greedy;
+    phone.state_mut().survey_rival = Some(Rival::OverHeights(greedy));
+    phone.state_mut().fly(setup);
+    phone.state_mut().playing = false;
+    play(&mut phone, 40);
+    compare(&mut phone, "phone-side-by-side");
+}
+
+/// Chooses from a menu, and pauses what begins anew.
+fn choose(harness: &mut Harness<'static, App>, menu: &str, item: &str) {
+    harness.get_by_label(menu).click();
+    harness.run_steps(3);
+    harness.get_by_label(item).click();
+    harness.step();
+    harness.state_mut().playing = false;
+    harness.run_steps(3);
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn obey(
             (VoxelReply::Done, Cost::default())
         }
         VoxelRequest::Observe(at, heading) => {
-            let observed = stopwatch.measure(|| robot.observe_towards(at, heading, seen));
+            let observed = stopwatch.measure(|| robot.observe_towards(at, heading, seen.iter()));
             seen.clear();
             done(observed)
         }

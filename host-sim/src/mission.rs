@@ -1,22 +1,32 @@
 //! Where robots go when they have explored, and how far they can go.
 
 use clap::Args;
+use planner_core::survey;
 use serde::{Deserialize, Serialize};
 
-/// What robots are sent out with. Nothing of it by default; for the explorer only.
+/// What robots are sent out with. Nothing of it by default; for the explorer and for surveys over
+/// heights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Mission {
     /// Whether a robot that has explored goes home, to where it started, before it stops.
     pub come_home: bool,
     /// Steps that the energy of a robot lasts for, and again when it is told to go on; 0: no
-    /// limit.
+    /// limit. In the air it spends as much when it hovers.
     pub energy: u32,
 }
 
 impl Mission {
     pub(crate) fn is_none(&self) -> bool {
         *self == Self::default()
+    }
+
+    /// The same for planners over heights.
+    pub(crate) const fn of_surveys(self) -> survey::Mission {
+        survey::Mission {
+            come_home: self.come_home,
+            energy: self.energy,
+        }
     }
 
     /// What is set, as names and values of options.
@@ -30,12 +40,13 @@ impl Mission {
 /// The options that set a [`Mission`].
 #[derive(Args, Clone, Copy)]
 pub struct MissionArgs {
-    /// A robot that has explored goes home, to where it started, before it stops. Explorer
-    /// only.
+    /// A robot that has explored goes home, to where it started, before it stops. Explorer,
+    /// and surveys over heights.
     #[arg(long)]
     come_home: bool,
     /// Steps that a robot's energy lasts for: it turns back in time, and stops at home. With
-    /// --resume it goes on with as much again. Explorer only.
+    /// --resume it goes on with as much again. Explorer, and surveys over heights, where
+    /// hovering takes as much as a step.
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     energy: Option<u32>,
 }

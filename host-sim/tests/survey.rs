@@ -8,9 +8,10 @@ use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::{Planner as VoxelPlanner, Scenario as VoxelScenario};
-use host_sim::scenario::{Event, MediumKind};
+use host_sim::scenario::{Event, MediumKind, Mission};
 use host_sim::scene::octree::OcTree;
 use host_sim::scene::{self, Scene};
+use host_sim::summary::heights::Summary;
 use host_sim::terrain::{Terrain, look};
 use planner_core::surface::Height;
 use planner_core::volume::{Content, Field};
@@ -62,6 +63,41 @@ fn rewards_add_up_and_flights_are_safe() {
             );
             assert_eq!(trace.safety, Default::default(), "{planner:?}");
             assert!(trace.complete());
+        }
+    }
+}
+
+/// Alone and in fleets, with all planners: robots come home over every terrain, in time, and
+/// nothing unsafe happens on the way.
+#[test]
+fn robots_come_home_in_time() {
+    for (seed, planner) in (0..).zip(ALL) {
+        for (robots, energy) in [(1, 0), (1, 60), (1, 150), (4, 0), (4, 70), (9, 40)] {
+            let terrain = match seed % 2 {
+                0 => Terrain::gaussian(seed, 40),
+                _ => Terrain::urban(seed, 40),
+            };
+            let mut scenario = Scenario::new(planner, robots, seed);
+            scenario.conditions.mission = Mission {
+                come_home: true,
+                energy,
+            };
+            let trace = run(&terrain, &scenario).unwrap();
+            assert_eq!(trace.safety, Default::default(), "{planner:?}");
+            assert!(trace.all_stopped && (energy > 0 || trace.complete()));
+            let summary = Summary::new(&trace);
+            for (number, robot) in summary.robots.iter().enumerate() {
+                let case = format!("{planner:?} {robots} {energy}: robot {number} {robot:?}");
+                assert!(robot.is_home, "{case}");
+                let refused = robot.blocked_steps > 0;
+                let ticks = trace
+                    .of(number)
+                    .filter(|record| !matches!(record.deed, Deed::Stopped(_)));
+                assert!(
+                    energy == 0 || robots > 1 || refused || ticks.count() <= energy as usize,
+                    "{case}"
+                );
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::MAX_LEN;
 use planner_core::surface::{Column, Height, Patch};
-use planner_core::survey::{Limits, Surveyor};
+use planner_core::survey::{Limits, Mission, Surveyor};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Field, Voxel, VoxelPatch};
 use planner_core::voxel_survey::{self, VoxelSurvey};
@@ -31,6 +31,10 @@ pub(super) fn call_all() {
             link: any::link(),
             seed: 1,
             choice: Choice::Cubic,
+            mission: black_box(Mission {
+                come_home: true,
+                energy: 9,
+            }),
         });
         let _ = black_box(robot.reset(config, any::id(), any::extent()));
         drive(robot);
@@ -61,6 +65,8 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Surveyor<TW, TH>) {
     let mut frame = black_box([0; MAX_LEN]);
     black_box(robot.transmit(&mut frame));
     let _ = black_box(robot.receive(any::bytes(&frame)));
+    black_box(robot.tick());
+    black_box((robot.energy(9), robot.go_home()));
     black_box(robot.tick());
     robot.report(black_box(Motion::Moved), point());
     black_box((robot.status(), robot.work()));

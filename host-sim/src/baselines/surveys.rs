@@ -3,7 +3,7 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::surface::Surface;
-use planner_core::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
+use planner_core::survey::{Knowledge, Limits, Mission, Pilot, Recovery, SetupError};
 use planner_core::tile::bits;
 use planner_core::{Action, Cell, Extent, Point, RobotId};
 
@@ -60,6 +60,12 @@ impl<const TW: usize, const TH: usize> Follower<TW, TH> {
         })
     }
 
+    /// The same, sent out with this.
+    pub fn on(mut self, mission: Mission) -> Self {
+        self.knowledge.set_mission(mission);
+        self
+    }
+
     /// The centre's orders, which cost `work` to find.
     pub fn send_to(&mut self, target: Option<Cell>, work: u32) {
         self.order = (target, work);
@@ -84,6 +90,10 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for Follower<TW, TH> {
 
     fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
         &mut self.knowledge
+    }
+
+    fn fly_home(&mut self) -> Option<Action<Point>> {
+        Some(self.recovery.fly_home(&mut self.knowledge))
     }
 
     fn decide(&mut self) -> Action<Point> {

@@ -503,9 +503,10 @@ fn pilot<const T: usize>(
 ) -> Result<Pilot<T>, SetupError> {
     let limits = scenario.limits;
     let link = scenario.conditions.link();
+    let mission = scenario.conditions.mission.of_surveys();
     let follower = |guide| -> Result<Pilot<T>, SetupError> {
         let follower = Follower::new(extent, limits, link, id, guide)?;
-        Ok(Pilot::Follower(Box::new(follower)))
+        Ok(Pilot::Follower(Box::new(follower.on(mission))))
     };
     Ok(match scenario.planner {
         Planner::ClosestFrontier => follower(Guide::Closest)?,
@@ -523,6 +524,7 @@ fn pilot<const T: usize>(
                 limits,
                 link,
                 choice,
+                mission,
                 seed: scenario.conditions.seed,
             };
             let planner = SurveyorConfig::Coordinated(config);
@@ -531,6 +533,7 @@ fn pilot<const T: usize>(
         Planner::Fcao => {
             let config = fcao::Config {
                 link,
+                mission,
                 ..fcao::Config::new(limits, scenario.conditions.seed)
             };
             let planner = SurveyorConfig::Fcao(config);

@@ -98,7 +98,8 @@ impl Scenario {
             separation,
         } = self.limits;
         self.conditions.check(self.robots)?;
-        self.conditions.check_flown("over a terrain of heights")?;
+        self.conditions
+            .check_flown("over a terrain of heights", true)?;
         check_share("skip", self.skip)?;
         let within = |option, found: f32, is_good: bool, expected: String| match is_good {
             true => Ok(()),

@@ -174,8 +174,9 @@ impl Conditions {
         used.map(|(option, _)| option)
     }
 
-    /// Nothing that is of cells or poses of a grid, which `world` does not have.
-    fn check_flown(&self, world: &'static str) -> Result<(), ScenarioError> {
+    /// Nothing that is of cells or poses of a grid, which `world` does not have; missions
+    /// only where robots know the way home.
+    fn check_flown(&self, world: &'static str, knows_home: bool) -> Result<(), ScenarioError> {
         let faults = &self.faults;
         let of_grids = [
             ("close", !faults.closures.is_empty()),
@@ -187,7 +188,9 @@ impl Conditions {
         ];
         let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
         let mut settings = self.trouble.settings(&Trouble::default());
-        settings.extend(self.mission.settings());
+        if !knows_home {
+            settings.extend(self.mission.settings());
+        }
         settings.extend(self.limits.settings());
         let named = settings.iter().map(|(option, _)| *option);
         match used.map(|(option, _)| option).chain(named).next() {

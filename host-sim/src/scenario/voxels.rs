@@ -88,7 +88,7 @@ impl Scenario {
     /// The first setting that is out of its range, and the range.
     pub fn check(&self, scene: &Scene) -> Result<(), ScenarioError> {
         self.conditions.check(self.robots)?;
-        self.conditions.check_flown("in a town of voxels")?;
+        self.conditions.check_flown("in a town of voxels", false)?;
         if !(2..=MAX_RANGE).contains(&self.range) {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));

@@ -73,6 +73,8 @@ pub struct RobotSummary {
     pub stop: Option<&'static str>,
     /// The reason in words.
     pub stop_reason: Option<String>,
+    /// Whether it is where it started, or within a cell of it.
+    pub is_home: bool,
     /// Whether it lived to the end of the run.
     pub alive: bool,
 }
@@ -138,6 +140,7 @@ impl RobotSummary {
         let distance = legs.sum();
         let start = trace.starts[robot];
         let stop = trace.stops[robot];
+        let is_home = way.last().is_none_or(|at| at.distance(start) <= 1.0);
         let faults = &trace.scenario.conditions.faults;
         let last = trace.seen.len() as u32 - 1;
         Self {
@@ -153,6 +156,7 @@ impl RobotSummary {
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
             stop: stop.map(|stop| stop.reason().name()),
             stop_reason: stop.map(|stop| stop.to_string()),
+            is_home,
             alive: faults.is_alive(RobotId(robot as u8), last),
         }
     }

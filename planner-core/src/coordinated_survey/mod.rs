@@ -27,7 +27,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
+use crate::survey::{Knowledge, Limits, Mission, Pilot, Recovery, SetupError};
 use crate::tile::TileIndex;
 use frontier::SHORTLIST;
 use heapless::Vec;
@@ -67,6 +67,8 @@ pub struct Config {
     pub seed: u64,
     /// How the local step is chosen.
     pub choice: Choice,
+    /// What the robots are sent out with.
+    pub mission: Mission,
 }
 
 /// The planner of one robot, over a map of `TW`×`TH` tiles.
@@ -97,6 +99,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
                 link: LinkConfig::vacant(),
                 seed: 0,
                 choice: Choice::Map,
+                mission: Mission::NONE,
             },
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
@@ -120,6 +123,7 @@ impl<const TW: usize, const TH: usize> CoordinatedSurvey<TW, TH> {
     pub fn reset(&mut self, config: Config, id: RobotId, extent: Extent) -> Result<(), SetupError> {
         self.knowledge
             .reset(extent, config.limits, config.link, id)?;
+        self.knowledge.set_mission(config.mission);
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
@@ -187,6 +191,10 @@ impl<const TW: usize, const TH: usize> Pilot<TW, TH> for CoordinatedSurvey<TW, T
 
     fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
         &mut self.knowledge
+    }
+
+    fn fly_home(&mut self) -> Option<Action<Point>> {
+        Some(self.recovery.fly_home(&mut self.knowledge))
     }
 
     fn decide(&mut self) -> Action<Point> {

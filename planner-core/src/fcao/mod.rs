@@ -14,7 +14,7 @@ use crate::point::Point;
 use crate::radio::LinkConfig;
 use crate::rng::Rng;
 use crate::robot::{Action, RobotId};
-use crate::survey::{Knowledge, Limits, Pilot, Recovery, SetupError};
+use crate::survey::{Knowledge, Limits, Mission, Pilot, Recovery, SetupError};
 
 /// Reading: a step is a local optimum if it gains at most this share of the area
 /// that a straight step newly covers, 2Rα.
@@ -43,6 +43,8 @@ pub struct Config {
     pub candidates: u16,
     /// Seed of the fleet's random candidates.
     pub seed: u64,
+    /// What the robots are sent out with.
+    pub mission: Mission,
 }
 
 impl Config {
@@ -54,6 +56,7 @@ impl Config {
             degree: Degree::Cubic,
             candidates: 100,
             seed,
+            mission: Mission::NONE,
         }
     }
 }
@@ -80,6 +83,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
                 degree: Degree::Linear,
                 candidates: 0,
                 seed: 0,
+                mission: Mission::NONE,
             },
             knowledge: Knowledge::vacant(),
             rng: Rng::vacant(),
@@ -99,6 +103,7 @@ impl<const TW: usize, const TH: usize, const H: usize> Fcao<TW, TH, H> {
     pub fn reset(&mut self, config: Config, id: RobotId, extent: Extent) -> Result<(), SetupError> {
         self.knowledge
             .reset(extent, config.limits, config.link, id)?;
+        self.knowledge.set_mission(config.mission);
         self.config = config;
         self.rng = Rng::new(config.seed, u64::from(id.0));
         self.history = History::new();
@@ -216,6 +221,10 @@ impl<const TW: usize, const TH: usize, const H: usize> Pilot<TW, TH> for Fcao<TW
 
     fn knowledge_mut(&mut self) -> &mut Knowledge<TW, TH> {
         &mut self.knowledge
+    }
+
+    fn fly_home(&mut self) -> Option<Action<Point>> {
+        Some(self.recovery.fly_home(&mut self.knowledge))
     }
 
     // [Renzaglia2019 Algorithm 1]

@@ -1,9 +1,9 @@
 //! Which flights are allowed, and how to fly to a place on the ground plan.
 
-use super::Knowledge;
+use super::{Knowledge, Limits};
 use crate::math;
 use crate::point::Point;
-use crate::surface::{Columns, Height, clearance};
+use crate::surface::{Columns, Height, Surface, clearance};
 
 /// Headings that are tried beside the straight one, in radians.
 const TURNS: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6];
@@ -11,7 +11,72 @@ const TURNS: [f32; 7] = [0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6];
 /// Shares of a step that are tried.
 const LENGTHS: [f32; 4] = [1.0, 0.75, 0.5, 0.25];
 
+/// Places nearer to each other than this, in cells, are the same.
+pub(super) const SAME: f32 = 1e-3;
+
+/// How far beside a long straight way everything is open too.
+const BESIDE: f32 = 0.01;
+
+/// What is known of straight flights between any two places.
+pub(super) struct Sky<'a, const TW: usize, const TH: usize> {
+    pub(super) limits: Limits,
+    pub(super) surface: &'a Surface<TW, TH>,
+}
+
+impl<const TW: usize, const TH: usize> Sky<'_, TW, TH> {
+    /// As [`Knowledge::is_open`].
+    pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
+        let is_rise = (to.x, to.y) == (from.x, from.y) && to.z > from.z;
+        to.is_finite()
+            && (to.z <= self.limits.ceiling || to.z < from.z)
+            && clearance(from, to, |cell| self.surface.height(cell))
+                .is_some_and(|least| least >= self.limits.min_altitude || is_rise)
+    }
+
+    /// Whether the flight is open in one step, or else in several, whatever their ends are
+    /// rounded to: a column that a line near the way crosses is crossed by one of the two
+    /// lines beside it, which are open and a little lower.
+    ///
+    /// Cost: two lines of columns.
+    pub(super) fn is_way(&self, from: Point, to: Point) -> bool {
+        let length = math::length(to.x - from.x, to.y - from.y);
+        if from.distance(to) <= self.limits.step || length < SAME {
+            return self.is_open(from, to);
+        }
+        let (east, south) = ((to.x - from.x) / length, (to.y - from.y) / length);
+        [BESIDE, -BESIDE].into_iter().all(|side| {
+            let beside = |at: Point| at.offset(-side * south, side * east, -SAME);
+            self.is_open(beside(from), beside(to))
+        })
+    }
+
+    /// Steps of a straight way.
+    pub(super) fn steps(&self, from: Point, to: Point) -> u32 {
+        let steps = (from.distance(to) - 0.5 * SAME) / self.limits.step;
+        -math::floor(-steps).min(0.0) as u32
+    }
+
+    /// The end of the next of them.
+    pub(super) fn step(&self, from: Point, to: Point) -> Point {
+        let distance = from.distance(to);
+        if distance <= self.limits.step + 0.5 * SAME {
+            return to;
+        }
+        let share = self.limits.step / distance;
+        let (dx, dy, dz) = (to.x - from.x, to.y - from.y, to.z - from.z);
+        from.offset(dx * share, dy * share, dz * share)
+    }
+}
+
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
+    /// What is known of straight flights.
+    pub(super) const fn sky(&self) -> Sky<'_, TW, TH> {
+        Sky {
+            limits: self.limits,
+            surface: &self.surface,
+        }
+    }
+
     /// Whether the robot may fly straight to `to`: known ground all the way, least
     /// altitude over it, below the ceiling, and clear of every robot heard of.
     ///
@@ -23,13 +88,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     }
 
     /// The same without a look at other robots.
+    #[inline]
     pub(crate) fn is_open(&self, to: Point) -> bool {
-        let Point { x, y, z } = self.position;
-        let is_rise = (to.x, to.y) == (x, y) && to.z > z;
-        to.is_finite()
-            && (to.z <= self.limits.ceiling || to.z < z)
-            && clearance(self.position, to, |cell| self.surface.height(cell))
-                .is_some_and(|least| least >= self.limits.min_altitude || is_rise)
+        self.sky().is_open(self.position, to)
     }
 
     /// A robot that a straight flight to `to` would come too near to. One that is

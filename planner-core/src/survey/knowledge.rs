@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::Limits;
 use super::link::Link;
+use super::mission::Errand;
 use super::news::{MAX_RANGE, News, REPEATS};
 use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::point::Point;
@@ -91,6 +92,7 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     resumed: bool,
     waiting: Maybe<Wait>,
     work: u32,
+    pub(super) errand: Errand,
 }
 
 impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
@@ -118,6 +120,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             resumed: false,
             waiting: Maybe::Nothing,
             work: 0,
+            errand: Errand::vacant(),
         }
     }
 
@@ -173,6 +176,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.resumed = false;
         self.waiting = Maybe::Nothing;
         self.work = 0;
+        self.errand.reset();
         log!(info, "robot {}: starts over {} columns", id.0, extent);
         Ok(())
     }
@@ -232,7 +236,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         Status {
             position: self.position,
             goal: self.goal,
-            activity: Activity::stopped_if(self.stopped),
+            activity: Activity::stopped_if(self.stopped || self.errand.returns()),
         }
     }
 
@@ -345,6 +349,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             return;
         }
         self.position = at;
+        self.errand.begin(at);
         self.news.begin(at);
         for &column in columns {
             if self.surface.learn(column) {
@@ -394,6 +399,21 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         if !self.lost {
             self.position = at;
         }
+    }
+
+    /// Whether the last pose was a bad one.
+    pub(super) const fn is_lost(&self) -> bool {
+        self.lost
+    }
+
+    /// The flight that was ordered last, from where to where.
+    pub(super) const fn flight(&self) -> (Point, Point) {
+        self.flight
+    }
+
+    /// Why the robot stopped, if it did, and the number of known columns then.
+    pub(super) const fn reason(&self) -> (Stop, u32) {
+        self.reason
     }
 
     /// Whether the last flight was refused.
@@ -484,6 +504,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.resumed = true;
         self.silent = 0;
         self.idle = 0;
+        self.errand.resume();
     }
 
     /// Whether what was given up is to be tried again; asking clears it.

@@ -12,8 +12,10 @@
 mod flight;
 mod knowledge;
 mod link;
+mod mission;
 mod news;
 mod recovery;
+mod trail;
 
 use crate::cell::Cell;
 use crate::point::Point;
@@ -21,6 +23,7 @@ use crate::radio::{FrameError, MAX_LEN};
 use crate::robot::{Action, Motion, RobotId, Status, Wait};
 use crate::surface::{Column, Patch};
 pub use knowledge::{Knowledge, SetupError};
+pub use mission::Mission;
 pub use news::MAX_RANGE;
 pub use recovery::Recovery;
 
@@ -112,6 +115,23 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     /// Without a stop it does only the latter.
     fn resume(&mut self);
 
+    /// Flies home, to above where it started, and stops there with
+    /// [`Stop::Home`](crate::Stop::Home), or says why not: [`Blocked`](crate::Stop::Blocked),
+    /// [`Held`](crate::Stop::Held) or [`NoWay`](crate::Stop::NoWay). Also from a stop;
+    /// [`resume`](Self::resume) then goes on. False where the planner cannot.
+    fn go_home(&mut self) -> bool {
+        false
+    }
+
+    /// Tells the planner how many more ticks in the air the robot's energy allows, hovering
+    /// as well as flying. It counts down by itself; a number measured anew replaces it. The
+    /// robot turns back in time, as `survey/mission.rs` proves, and stops at home with
+    /// [`Stop::Home`](crate::Stop::Home). False where the planner cannot.
+    fn energy(&mut self, left: u32) -> bool {
+        let _ = left;
+        false
+    }
+
     /// Says how the last [`Action::Move`] went, and where the robot is now.
     fn report(&mut self, motion: Motion, at: Point);
 
@@ -152,11 +172,28 @@ pub trait Pilot<const TW: usize, const TH: usize> {
     /// What to do in a step in which there is something to decide.
     fn decide(&mut self) -> Action<Point>;
 
+    /// A step of the way home, of a pilot that can: [`Recovery::fly_home`].
+    fn fly_home(&mut self) -> Option<Action<Point>> {
+        None
+    }
+
     /// What to do in any step.
     fn act(&mut self) -> Action<Point> {
-        let action = match self.knowledge_mut().begin_tick() {
+        let begun = self.knowledge_mut().begin_tick();
+        let homeward = if self.knowledge_mut().is_to_go_home() {
+            self.fly_home()
+        } else {
+            None
+        };
+        let action = match homeward.or(begun) {
             Some(action) => action,
             None => self.decide(),
+        };
+        let action = match action {
+            Action::Stop(_) if homeward.is_none() && Pilot::knowledge(self).comes_home() => {
+                self.fly_home().unwrap_or(action)
+            }
+            _ => action,
         };
         self.knowledge_mut().end_tick(action)
     }
@@ -184,6 +221,16 @@ where
 
     fn resume(&mut self) {
         self.knowledge_mut().resume();
+    }
+
+    fn go_home(&mut self) -> bool {
+        self.knowledge_mut().send_home();
+        true
+    }
+
+    fn energy(&mut self, left: u32) -> bool {
+        self.knowledge_mut().set_energy(left);
+        true
     }
 
     fn report(&mut self, motion: Motion, at: Point) {

@@ -45,6 +45,7 @@
 //!
 //! Steps without a good pose are outside of all counts: nothing is decided in them.
 
+mod home;
 mod way;
 
 use super::Knowledge;
@@ -116,6 +117,11 @@ pub struct Recovery<const TW: usize, const TH: usize> {
     climbing: bool,
     /// Steps left to get there.
     patience: u16,
+    /// Whether it is used for the way home, and whether a way round is looked for.
+    is_homeward: bool,
+    is_round: bool,
+    /// Flights round others on the way home, and ticks in which the robot waited for them.
+    detours: u8,
 }
 
 impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
@@ -145,6 +151,9 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
             edge: 0,
             climbing: false,
             patience: 0,
+            is_homeward: false,
+            is_round: false,
+            detours: 0,
         }
     }
 
@@ -161,6 +170,8 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         self.edge = 0;
         self.climbing = false;
         self.patience = 0;
+        self.is_homeward = false;
+        self.is_round = false;
     }
 
     /// Nothing counts as tried.
@@ -202,10 +213,11 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         let refused = knowledge.take_refused();
         let known_columns = knowledge.surface().known_columns();
         let is_resumed = knowledge.take_resumed();
-        if self.known_columns != known_columns || is_resumed {
+        let was_homeward = core::mem::take(&mut self.is_homeward);
+        if self.known_columns != known_columns || is_resumed || was_homeward {
             self.known_columns = known_columns;
             self.begin_spell();
-            if self.careful {
+            if self.careful || was_homeward {
                 // Ways led round what was closed.
                 self.goal = None;
                 self.careful = false;

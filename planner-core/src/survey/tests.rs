@@ -1,5 +1,7 @@
 //! A survey ends, and says the truth, whatever refuses, hides or talks.
 
+mod mission;
+
 use std::collections::BTreeSet;
 use std::vec::Vec;
 
@@ -27,17 +29,29 @@ const START: Point = Point::new(1.5, 1.5, 3.0);
 type Robot = std::boxed::Box<dyn Surveyor<2, 2>>;
 
 fn coordinated() -> Robot {
+    coordinated_on(Mission::NONE)
+}
+
+fn coordinated_on(mission: Mission) -> Robot {
     let config = coordinated_survey::Config {
         limits: LIMITS,
         link: LinkConfig::new(),
         seed: 3,
         choice: Choice::Map,
+        mission,
     };
     std::boxed::Box::new(CoordinatedSurvey::<2, 2>::new(config, RobotId(0), EXTENT).unwrap())
 }
 
 fn published() -> Robot {
-    let config = fcao::Config::new(LIMITS, 3);
+    published_on(Mission::NONE)
+}
+
+fn published_on(mission: Mission) -> Robot {
+    let config = fcao::Config {
+        mission,
+        ..fcao::Config::new(LIMITS, 3)
+    };
     std::boxed::Box::new(Fcao::<2, 2>::new(config, RobotId(0), EXTENT).unwrap())
 }
 

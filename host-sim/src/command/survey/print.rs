@@ -47,6 +47,10 @@ pub(super) fn print(summary: &Summary, out: &Path) {
         summary.seconds.zip(summary.speed),
         summary.robots.iter().filter_map(|robot| robot.metres),
     );
+    print_home(
+        &summary.head,
+        summary.robots.iter().map(|robot| robot.is_home),
+    );
     print_end(&summary.head, out);
 }
 
@@ -113,6 +117,16 @@ fn print_metres(time: Option<(f64, f64)>, ways: impl Iterator<Item = f64>) {
     }
     if let Some(most) = ways.reduce(f64::max) {
         println!("  longest way        {most:.1} m");
+    }
+}
+
+/// How many came home, where they were to.
+fn print_home(head: &Head, are_home: impl ExactSizeIterator<Item = bool>) {
+    let mission = head.conditions.mission;
+    if mission.come_home || mission.energy > 0 {
+        let robots = are_home.len();
+        let home = are_home.filter(|&is_home| is_home).count();
+        println!("  at home            {home} of {robots} robots");
     }
 }
 

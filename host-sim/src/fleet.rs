@@ -353,8 +353,7 @@ impl<const TW: usize, const TH: usize> Fleet<TW, TH> {
             });
             return false;
         }
-        let closures = &self.rules.faults.closures;
-        !closures.iter().any(|of| of.holds(cell, self.tick))
+        !self.rules.faults.is_closed(cell, self.tick)
     }
 
     /// A robot wants the cell that another one holds: roles walk, bodies stay.

@@ -8,7 +8,7 @@ use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::{Planner as VoxelPlanner, Scenario as VoxelScenario};
-use host_sim::scenario::{Event, MediumKind, Mission};
+use host_sim::scenario::{CellSpan, Event, Faults, MediumKind, Mission};
 use host_sim::scene::octree::OcTree;
 use host_sim::scene::{self, Scene};
 use host_sim::summary::heights::Summary;
@@ -99,6 +99,57 @@ fn robots_come_home_in_time() {
                 );
             }
         }
+    }
+}
+
+/// What goes wrong with columns, sensors and poses: all that can be seen is seen, and who
+/// cannot says why.
+#[test]
+fn columns_and_senses_fail() {
+    let terrain = Terrain::from_fn(Extent::new(24, 24), |_| Height(4));
+    let all = terrain.extent().cells();
+    let fly = |planner, change: &dyn Fn(&mut Faults)| {
+        let mut scenario = Scenario::new(planner, 1, 5);
+        change(&mut scenario.conditions.faults);
+        let trace = run(&terrain, &scenario).unwrap();
+        assert_eq!(trace.safety, Default::default());
+        let stop = trace.stops[0].expect("it stops");
+        (stop, trace)
+    };
+    let span = |text: &str| -> CellSpan { text.parse().unwrap() };
+    for planner in ALL {
+        let (stop, trace) = fly(planner, &|faults| faults.blind = vec![span("9,9")]);
+        let is_named = matches!(stop, Stop::Unseen { at, .. } if at == Cell::new(9, 9));
+        assert!(is_named, "{planner}: {stop}");
+        assert_eq!(trace.seen.last(), Some(&(all - 1)));
+
+        let wall = |ticks: &str| {
+            let wall = (0..24).map(|y| span(&format!("12,{y}{ticks}")));
+            wall.collect::<Vec<_>>()
+        };
+        let (stop, trace) = fly(planner, &|faults| faults.closures = wall(""));
+        let is_named = matches!(stop, Stop::Blocked { at, .. } if at.x == 12);
+        assert!(is_named, "{planner}: {stop}");
+        assert!(trace.seen.last() < Some(&all));
+        assert!(trace.records.iter().all(|record| record.at.x < 12.0));
+        let (stop, _) = fly(planner, &|faults| faults.closures = wall("@0-60"));
+        assert_eq!(stop, Stop::Complete, "{planner}");
+
+        let (stop, trace) = fly(planner, &|faults| {
+            faults.sensor_failures = vec!["0@6".parse().unwrap()];
+        });
+        assert!(matches!(stop, Stop::Unseen { .. }), "{planner}: {stop}");
+        assert_eq!(trace.seen.last(), trace.seen.get(6));
+
+        let (stop, trace) = fly(planner, &|faults| {
+            faults.lost_poses = vec!["0@6-30".parse().unwrap()];
+        });
+        assert_eq!(stop, Stop::Complete, "{planner}");
+        let lost = trace
+            .records
+            .iter()
+            .filter(|record| (6..30).contains(&record.tick));
+        assert!(lost.into_iter().all(|record| record.deed == Deed::Hovered));
     }
 }
 

@@ -60,18 +60,22 @@ fn what_does_not_apply_is_refused_by_its_name() {
         let arguments = format!("--terrain town:1 --size 24 {option}");
         assert_refused(path, &arguments, &[name, "does not apply", "town"]);
     }
-    for place in ["town:1", "gaussian:1"] {
-        for option in [
-            "close 3,4",
-            "blind 3,4",
-            "sensor-fails 0@1",
-            "pose-lost 0@1-2",
-        ] {
-            let arguments = format!("--terrain {place} --size 24 --{option}");
-            let (name, _) = option.split_once(' ').unwrap();
-            assert_refused(path, &arguments, &[name, "does not apply"]);
-        }
+    for option in [
+        "close 3,4",
+        "blind 3,4",
+        "sensor-fails 0@1",
+        "pose-lost 0@1-2",
+    ] {
+        let arguments = format!("--terrain town:1 --size 24 --{option}");
+        let (name, _) = option.split_once(' ').unwrap();
+        assert_refused(path, &arguments, &[name, "does not apply"]);
     }
+    for option in ["shut 3,4", "preset lidar"] {
+        let arguments = format!("--size 24 --{option}");
+        let (name, _) = option.split_once(' ').unwrap();
+        assert_refused(path, &arguments, &[name, "does not apply"]);
+    }
+    assert_refused(path, "--size 24 --close 30,4", &["--close 30,4", "24×24"]);
     for option in ["delay 2", "duplicate 0.5", "corrupt 0.5", "forge 2"] {
         let arguments = format!("--size 16 --medium ideal --{option}");
         let (name, _) = option.split_once(' ').unwrap();
@@ -488,7 +492,7 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             "--scene rooms.bt --metres-per-cell 1",
             ["--metres-per-cell", "--scene"],
         ),
-        ("--sensor downward", ["--sensor", "among voxels"]),
+        ("--sensor camera", ["--sensor camera", "among voxels"]),
         ("--fov 90x60", ["--fov", "among voxels"]),
         ("--scene rooms.bt --fov 90x60", ["--fov", "--sensor camera"]),
         (

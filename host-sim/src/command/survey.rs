@@ -92,7 +92,8 @@ pub(crate) struct Survey {
     range: f32,
     /// What robots see among voxels: everything around them; what is before a depth camera
     /// (--fov), which turns to one of eight sides, a quarter turn a step; what is no higher
-    /// than they are; or their own level. All feel what is within two voxels.
+    /// than they are; or their own level. All feel what is within two voxels. Over heights
+    /// all-round and downward are the same: no top above a drone is in its sight.
     #[arg(long, value_enum, value_name = "KIND", hide_default_value = true)]
     sensor: Option<Sensor>,
     /// Width and height of the image of --sensor camera in degrees: 45 to 170 and 1 to 170.
@@ -139,7 +140,8 @@ impl Survey {
         }
         let among_voxels = [
             ("start", self.start.is_some()),
-            ("sensor", self.sensor.is_some()),
+            ("sensor camera", self.sensor == Some(Sensor::Camera)),
+            ("sensor lidar", self.sensor == Some(Sensor::Lidar)),
             ("fov", self.fov.is_some()),
         ];
         if let Some((option, _)) = among_voxels.iter().find(|(_, given)| *given) {

@@ -8,7 +8,7 @@ use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
-use planner_core::surface::Surface;
+use planner_core::surface::{Columns, Surface};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
@@ -24,6 +24,9 @@ use crate::terrain::{Terrain, look};
 
 /// Takes the chance of sleep apart from that of the air: "sleep".
 const SLEEP: u64 = 0x73_6c65_6570;
+
+/// The pose of a robot that does not know where it is.
+const NOWHERE: Point = Point::new(f32::NAN, f32::NAN, f32::NAN);
 
 /// Where the planners of a survey are.
 pub trait Host: Clone + 'static {
@@ -346,8 +349,19 @@ impl<const T: usize> Simulation<T> {
     }
 
     fn sense(&mut self) {
-        for robot in self.robots.iter_mut().filter(|robot| robot.awake) {
-            let columns = look(&self.terrain, robot.at, self.scenario.limits.range);
+        let faults = &self.scenario.conditions.faults;
+        for (number, robot) in self.robots.iter_mut().enumerate() {
+            if !robot.awake {
+                continue;
+            }
+            let mut columns = look(&self.terrain, robot.at, self.scenario.limits.range);
+            columns.retain(|column| {
+                !faults.is_blind(column.cell, self.now) && !faults.has_failed(number, self.now)
+            });
+            if faults.is_lost(number, self.now) {
+                robot.pilot.get_mut().observe(NOWHERE, &columns);
+                continue;
+            }
             for &column in &columns {
                 if self.union.learn(column) {
                     self.trace.found.push((self.now, column));
@@ -429,7 +443,7 @@ impl<const T: usize> Simulation<T> {
             Action::Stop(reason) => Deed::Stopped(reason.reason()),
         };
         if let Action::Move(to) = action {
-            if self.collides(i, to) {
+            if self.collides(i, to) || self.is_closed(from, to) {
                 deed = Deed::Refused;
             } else {
                 self.trace
@@ -480,6 +494,15 @@ impl<const T: usize> Simulation<T> {
         self.robots.iter().enumerate().any(|(other, robot)| {
             other != i && robot.alive && robot.at.distance(to) < self.scenario.limits.separation
         })
+    }
+
+    /// Whether the flight enters a column that nobody can.
+    fn is_closed(&self, from: Point, to: Point) -> bool {
+        let faults = &self.scenario.conditions.faults;
+        !faults.closures.is_empty()
+            && Columns::new(from, to)
+                .skip(1)
+                .any(|crossing| faults.is_closed(crossing.cell, self.now))
     }
 
     fn check_safety(&mut self) {

@@ -3,9 +3,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-use planner_core::{Cell, RobotId};
+use planner_core::{Cell, Extent, RobotId};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+use super::ScenarioError;
 
 /// What goes wrong with robots, cells and senses, and who is told to go on.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,6 +61,47 @@ impl Faults {
         events
             .flat_map(|(option, events)| events.iter().map(move |of| (option, of.robot)))
             .chain(lost)
+    }
+
+    /// # Errors
+    /// A cell that is named lies outside of a map of `extent`.
+    pub(super) fn check_cells(&self, extent: Extent) -> Result<(), ScenarioError> {
+        let spans = [
+            ("close", &self.closures),
+            ("shut", &self.shut),
+            ("blind", &self.blind),
+        ];
+        for (option, spans) in spans {
+            if let Some(span) = spans.iter().find(|of| !extent.contains(of.cell)) {
+                return Err(ScenarioError::FaultOutside {
+                    option,
+                    cell: span.cell,
+                    extent,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether nobody can enter `cell` in `tick`.
+    pub(crate) fn is_closed(&self, cell: Cell, tick: u32) -> bool {
+        self.closures.iter().any(|of| of.holds(cell, tick))
+    }
+
+    /// Whether no sensor shows `cell` in `tick`.
+    pub(crate) fn is_blind(&self, cell: Cell, tick: u32) -> bool {
+        self.blind.iter().any(|of| of.holds(cell, tick))
+    }
+
+    /// Whether the sensor of `robot` shows nothing in `tick`.
+    pub(crate) fn has_failed(&self, robot: usize, tick: u32) -> bool {
+        let has = |of: &Event| usize::from(of.robot.0) == robot && of.tick <= tick;
+        self.sensor_failures.iter().any(has)
+    }
+
+    /// Whether `robot` does not know where it is in `tick`.
+    pub(crate) fn is_lost(&self, robot: usize, tick: u32) -> bool {
+        self.lost_poses.iter().any(|of| of.holds(robot, tick))
     }
 
     /// Whether one of `events` befalls `robot` in `tick`.

@@ -117,7 +117,8 @@ impl Scenario {
         {
             return Err(ScenarioError::NeverHome { option, planner });
         }
-        self.check_fault_cells()?;
+        let extent = self.world.extent();
+        self.conditions.faults.check_cells(extent)?;
         self.check_limits()?;
         self.check_save()?;
         for (robot, &start) in self.starts.iter().enumerate() {
@@ -292,26 +293,6 @@ impl Scenario {
         }
         let open = self.world.without(|cell| limits.keeps_out(cell));
         open.reachable_by(from, self.clearance)
-    }
-
-    fn check_fault_cells(&self) -> Result<(), ScenarioError> {
-        let extent = self.world.extent();
-        let faults = &self.conditions.faults;
-        let spans = [
-            ("close", &faults.closures),
-            ("shut", &faults.shut),
-            ("blind", &faults.blind),
-        ];
-        for (option, spans) in spans {
-            if let Some(span) = spans.iter().find(|of| !extent.contains(of.cell)) {
-                return Err(ScenarioError::FaultOutside {
-                    option,
-                    cell: span.cell,
-                    extent,
-                });
-            }
-        }
-        Ok(())
     }
 
     /// The sensor that its robots carry.

@@ -141,9 +141,11 @@ impl Scenario {
     /// a square, one cell above the least altitude.
     ///
     /// # Errors
-    /// They do not fit into the terrain, or under the ceiling; and what would.
+    /// They do not fit into the terrain, or under the ceiling, and what would; or a fault is of
+    /// a column that lies outside.
     pub fn starts(&self, terrain: &Terrain) -> Result<Vec<Point>, ScenarioError> {
         let extent = terrain.extent();
+        self.conditions.faults.check_cells(extent)?;
         if !fit(self.robots, extent) {
             return Err(ScenarioError::NoRoom {
                 robots: self.robots,

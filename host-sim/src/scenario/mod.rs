@@ -174,21 +174,22 @@ impl Conditions {
         used.map(|(option, _)| option)
     }
 
-    /// Nothing that is of cells or poses of a grid, which `world` does not have; missions
-    /// only where robots know the way home.
-    fn check_flown(&self, world: &'static str, knows_home: bool) -> Result<(), ScenarioError> {
+    /// Nothing that is of cells or poses of a grid, which `world` does not have; missions and
+    /// faults of columns, senses and poses only over heights.
+    fn check_flown(&self, world: &'static str, is_of_heights: bool) -> Result<(), ScenarioError> {
         let faults = &self.faults;
+        let has = |spans: usize| spans > 0 && !is_of_heights;
         let of_grids = [
-            ("close", !faults.closures.is_empty()),
+            ("close", has(faults.closures.len())),
             ("shut", !faults.shut.is_empty()),
             ("preset", !is_usual(&self.preset)),
-            ("blind", !faults.blind.is_empty()),
-            ("sensor-fails", !faults.sensor_failures.is_empty()),
-            ("pose-lost", !faults.lost_poses.is_empty()),
+            ("blind", has(faults.blind.len())),
+            ("sensor-fails", has(faults.sensor_failures.len())),
+            ("pose-lost", has(faults.lost_poses.len())),
         ];
         let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
         let mut settings = self.trouble.settings(&Trouble::default());
-        if !knows_home {
+        if !is_of_heights {
             settings.extend(self.mission.settings());
         }
         settings.extend(self.limits.settings());

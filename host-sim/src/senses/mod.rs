@@ -124,8 +124,7 @@ impl Senses {
 
     /// Whether a robot knows where it is, or believes to.
     pub fn has_pose(&self, robot: usize) -> bool {
-        let mut lost = self.faults.lost_poses.iter();
-        !lost.any(|of| of.holds(robot, self.tick))
+        !self.faults.is_lost(robot, self.tick)
     }
 
     /// What is in view of a robot at `at` in this tick, whatever its planner is told of
@@ -175,19 +174,14 @@ impl Senses {
 
     fn shown(&self, robot: usize, at: Cell) -> Cow<'_, View> {
         let (sensor, faults) = (&self.sensor, &self.faults);
-        let fell_silent = faults
-            .sensor_failures
-            .iter()
-            .any(|of| usize::from(of.robot.0) == robot && of.tick <= self.tick);
-        if fell_silent {
+        if faults.has_failed(robot, self.tick) {
             return Cow::Owned(View::new(sensor.world(), Sighting::new(at)));
         }
         let view = self.seen(robot, at);
         if faults.blind.is_empty() {
             return view;
         }
-        let is_blind = |cell: Cell| faults.blind.iter().any(|of| of.holds(cell, self.tick));
-        Cow::Owned(view.only(sensor.world(), |cell| !is_blind(cell)))
+        Cow::Owned(view.only(sensor.world(), |cell| !faults.is_blind(cell, self.tick)))
     }
 
     /// The world, and what stands in it.

@@ -177,6 +177,22 @@ mod tests {
         }
     }
 
+    proptest! {
+        /// A sensor that looks down misses nothing of a surface: no column whose top is higher
+        /// than the eye is in sight.
+        #[test]
+        fn what_is_higher_than_the_eye_is_not_in_sight(
+            eye in point(),
+            (x, y) in (0i16..20, 0i16..20),
+            heights in prop::collection::vec(0u8..80, 400),
+        ) {
+            let ground = |cell: Cell| heights.get(cell.y as usize * 20 + cell.x as usize).map(|&it| Height(it));
+            let cell = Cell::new(x, y);
+            let top = ground(cell).unwrap().cells();
+            prop_assert!(top <= eye.z || !in_sight(eye, Point::over(cell, top), ground));
+        }
+    }
+
     #[test]
     fn a_wall_hides_what_is_behind_it() {
         let wall = |cell: Cell| Some(Height(if cell.x == 3 { 20 } else { 0 }));

@@ -25,6 +25,7 @@ pub(super) struct Sky<'a, const TW: usize, const TH: usize> {
 
 impl<const TW: usize, const TH: usize> Sky<'_, TW, TH> {
     /// As [`Knowledge::is_open`].
+    #[inline(never)] // there are many calls
     pub(super) fn is_open(&self, from: Point, to: Point) -> bool {
         let is_rise = (to.x, to.y) == (from.x, from.y) && to.z > from.z;
         to.is_finite()
@@ -38,6 +39,7 @@ impl<const TW: usize, const TH: usize> Sky<'_, TW, TH> {
     /// lines beside it, which are open and a little lower.
     ///
     /// Cost: two lines of columns.
+    #[inline(never)] // there are many calls
     pub(super) fn is_way(&self, from: Point, to: Point) -> bool {
         let length = math::length(to.x - from.x, to.y - from.y);
         if from.distance(to) <= self.limits.step || length < SAME {

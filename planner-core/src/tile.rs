@@ -172,6 +172,29 @@ pub const fn carried(layer: u64, direction: Direction) -> u64 {
     }
 }
 
+/// The cells of a tile that are at most `reach`, 0 to 7, east or west of one of a layer, whose
+/// words of the tile to the west, of it and of that to the east are given.
+pub(crate) fn along([west, own, east]: [u64; 3], reach: u32) -> u64 {
+    (1..=reach.min(7)).fold(own, |all, by| {
+        // The columns that stay in the tile when they are moved east, and west.
+        let (eastward, westward) = (0xff >> by, 0xff << by & 0xff);
+        let (eastward, westward) = (eastward * WEST_COLUMN, westward * WEST_COLUMN);
+        let from_west = (own & eastward) << by | (west & !eastward) >> (8 - by);
+        let from_east = (own & westward) >> by | (east & !westward) << (8 - by);
+        all | from_west | from_east
+    })
+}
+
+/// The cells of a tile that are `by` rows, 0 to 7, north or south of one of a layer, whose
+/// words of the tile to the north, of it and of that to the south are given.
+pub(crate) fn across([north, own, south]: [u64; 3], by: u32) -> u64 {
+    let rows = TILE as u32 * by.min(7);
+    let carried =
+        |word: u64, shift: fn(u64, u32) -> Option<u64>| shift(word, u64::BITS - rows).unwrap_or(0);
+    let entering = carried(north, u64::checked_shr) | carried(south, u64::checked_shl);
+    own << rows | own >> rows | entering
+}
+
 /// The cells of tile `at` that have a 4-neighbour in a layer. Asks for the layer of five
 /// tiles, also of some that no map has.
 pub(crate) fn neighbours(at: TileIndex, layer: impl Fn(TileIndex) -> u64) -> u64 {

@@ -81,6 +81,7 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Surveyor<TW, TH>) {
 fn fly_among_voxels() {
     let config = black_box(voxel_survey::Config {
         range: 4,
+        clearance: black_box(2),
         field: Field::CAMERA,
         link: any::link(),
     });

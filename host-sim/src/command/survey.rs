@@ -1,5 +1,6 @@
 //! `host-sim survey`.
 
+mod body;
 mod print;
 mod ways;
 
@@ -27,6 +28,7 @@ use planner_core::voxel_survey::MAX_RANGE;
 
 use super::Done;
 use super::output::OutputArgs;
+use body::BodyArgs;
 use print::{ended, print, print_voxels};
 use ways::WayArgs;
 
@@ -92,14 +94,17 @@ pub(crate) struct Survey {
     range: f32,
     /// What robots see among voxels: everything around them; what is before a depth camera
     /// (--fov), which turns to one of eight sides, a quarter turn a step; what is no higher
-    /// than they are; or their own level. All feel what is within two voxels. Over heights
-    /// all-round and downward are the same: no top above a drone is in its sight.
+    /// than they are; or their own level. All feel what is within two voxels, and one more than
+    /// the --clearance. Over heights all-round and downward are the same: no top above a drone is
+    /// in its sight.
     #[arg(long, value_enum, value_name = "KIND", hide_default_value = true)]
     sensor: Option<Sensor>,
     /// Width and height of the image of --sensor camera in degrees: 45 to 170 and 1 to 170.
     /// Default: 90x60.
     #[arg(long, value_name = "WxH")]
     fov: Option<Fov>,
+    #[command(flatten)]
+    body: BodyArgs,
     /// Longest flight in a step, 0.1 to 100 cells. Default: 2.
     #[arg(long, value_name = "A")]
     step: Option<f32>,
@@ -144,7 +149,9 @@ impl Survey {
             ("sensor lidar", self.sensor == Some(Sensor::Lidar)),
             ("fov", self.fov.is_some()),
         ];
-        if let Some((option, _)) = among_voxels.iter().find(|(_, given)| *given) {
+        let given = among_voxels.iter().find(|(_, given)| *given);
+        let given = given.map(|(option, _)| *option);
+        if let Some(option) = given.or(self.body.given()) {
             return Err(format!(
                 "--{option} applies among voxels alone; leave it out, or choose --scene \
                  FILE or town:SEED"
@@ -228,11 +235,12 @@ impl Survey {
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
         scenario.planner = self.planner_for_voxels()?;
         scenario.range = self.range as u8;
-        scenario.field = self.field();
+        scenario.clearance = self.body.clearance(scene)?;
+        scenario.field = self.field(scenario.clearance);
         scenario.start = match self.start {
             Some(start) => Some(start.voxel(scene)?),
             // A town with metres is flown from where it is without.
-            None if self.scene.is_none() => scene.clone().framed(None).start(),
+            None if self.scene.is_none() => scene.clone().framed(None).start(scenario.clearance),
             None => None,
         };
         self.set(&mut scenario.conditions)?;
@@ -276,9 +284,17 @@ impl Survey {
         self.conditions.clone().set(conditions)
     }
 
-    fn field(&self) -> Field {
+    /// What robots see that feel where their body comes to next.
+    fn field(&self, clearance: u8) -> Field {
         let sensor = self.sensor.unwrap_or_default();
-        sensor.field(self.fov.unwrap_or_default())
+        let field = sensor.field(self.fov.unwrap_or_default());
+        Field {
+            near: match field.is_whole() {
+                true => field.near,
+                false => field.near.max(clearance + 1),
+            },
+            ..field
+        }
     }
 
     /// # Errors

@@ -13,7 +13,7 @@ use planner_core::volume::{Heading, Voxel, VoxelPatch};
 use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
-use crate::baselines::voxels::{Chart, assign};
+use crate::baselines::voxels::{Body, Chart, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::voxels::{Record, VoxelTrace};
@@ -193,6 +193,7 @@ impl Simulation {
         let start = scenario.start_in(scene)?;
         let config = Config {
             range: scenario.range,
+            clearance: scenario.clearance,
             field: scenario.field,
             link: scenario.conditions.link(),
         };
@@ -207,7 +208,14 @@ impl Simulation {
         };
         let robots = (0..scenario.robots).map(robot);
         let robots = robots.collect::<Result<_, ExtentError>>()?;
-        let visible = visible(&scene, start, scenario.range, scenario.field);
+        let Scenario {
+            range,
+            clearance,
+            field,
+            ..
+        } = *scenario;
+        let visible = visible(&scene, start, clearance, range, field);
+        let body = Body { range, clearance };
         if visible.count() == 0 {
             return Err(ScenarioError::NothingToSee);
         }
@@ -234,7 +242,7 @@ impl Simulation {
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
             centre: (scenario.planner == Planner::Greedy)
-                .then(|| Chart::new(scene.extent(), scene.levels(), scenario.range)),
+                .then(|| Chart::new(scene.extent(), scene.levels(), body)),
             scene,
             visible,
             seen: 0,
@@ -377,7 +385,8 @@ impl Simulation {
             Action::Stop(stop) => (at, Deed::Stopped(stop.reason()), Some(stop)),
         };
         let work = self.robots[i].planner.work();
-        let is_allowed = self.scene.is_pose(to) && at.distance_squared(to) <= 1;
+        let is_allowed =
+            self.scene.is_pose(to, self.config.clearance) && at.distance_squared(to) <= 1;
         self.trace.violations += u32::from(!is_allowed);
         self.trace.stops[i] = stop;
         self.robots[i].stopped = stop.is_some();

@@ -1,5 +1,7 @@
 //! Scenarios that cannot be run, and why.
 
+use std::fmt;
+
 use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 use planner_core::survey::SetupError;
 use planner_core::{Cell, Extent, ExtentError};
@@ -158,13 +160,16 @@ pub enum ScenarioError {
         side: u16,
         most: u8,
     },
-    #[error("there is no room for a robot: a robot and the six voxels beside it have to be free")]
-    NoPose,
+    #[error("there is no room for a robot: {0} has to be free")]
+    NoPose(BodyText),
     #[error(
-        "--start {found}: a robot and the six voxels beside it have to be known and free; the \
-         nearest such place is {nearest}"
+        "--start {found}: {body} has to be known and free; the nearest such place is {nearest}"
     )]
-    NoRoomAt { found: String, nearest: String },
+    NoRoomAt {
+        found: String,
+        body: BodyText,
+        nearest: String,
+    },
     #[error(
         "nothing of the scene can be seen from where robots can fly; a survey needs an occupied \
          voxel in sight and in range"
@@ -174,6 +179,20 @@ pub enum ScenarioError {
     Setup(#[from] SetupError),
     #[error("{0}")]
     Extent(#[from] ExtentError),
+}
+
+/// The voxels that a robot of this clearance has to have free, in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyText(pub u8);
+
+impl fmt::Display for BodyText {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            0 => write!(f, "its voxel"),
+            1 => write!(f, "its voxel with the six beside it"),
+            clearance => write!(f, "each voxel within {clearance} of its own"),
+        }
+    }
 }
 
 impl ScenarioError {

@@ -1,10 +1,11 @@
 //! Surveys of a scene of voxels.
 
 use clap::ValueEnum;
-use planner_core::volume::{Field, Voxel};
+use planner_core::volume::{Field, MAX_CLEARANCE, Voxel};
 use planner_core::voxel_survey::MAX_RANGE;
 use serde::{Deserialize, Serialize};
 
+use super::error::BodyText;
 use super::{Conditions, ScenarioError};
 use crate::scene::{LARGEST, LEVELS, Scene};
 
@@ -48,6 +49,16 @@ impl std::fmt::Display for Planner {
     }
 }
 
+/// The largest radius, in voxels, of a ball that touches nothing wherever a robot is and on its
+/// way, by clearance: to the nearest voxel that need not be free.
+pub const ROOM: [f64; MAX_CLEARANCE as usize + 1] = [0.5, 0.707, 1.581, 2.549];
+
+/// The least clearance for a ball of so many voxels' radius; `None`: none is enough.
+pub fn clearance_for(radius: f64) -> Option<u8> {
+    let fits = ROOM.iter().position(|&room| radius <= room);
+    fits.map(|clearance| clearance as u8)
+}
+
 /// What a run is a function of, beside the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scenario {
@@ -56,8 +67,12 @@ pub struct Scenario {
     pub planner: Planner,
     /// Number of robots, 1 to 255.
     pub robots: usize,
-    /// Sensor range in voxels, 2 to 12: robots keep a voxel away from everything.
+    /// Sensor range in voxels, 2 to 12 and more than the clearance.
     pub range: u8,
+    /// Voxels that the robots' bodies reach beyond the one of their middle, 0 to 3; see
+    /// [`Config::clearance`](planner_core::voxel_survey::Config::clearance).
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub clearance: u8,
     /// What of that the robots' sensors show.
     #[serde(default = "all_round", skip_serializing_if = "Field::is_whole")]
     pub field: Field,
@@ -76,6 +91,7 @@ impl Scenario {
             planner: Planner::default(),
             robots,
             range: 8,
+            clearance: one(),
             field: Field::ALL_ROUND,
             start: None,
             conditions: Conditions::flown(seed),
@@ -93,6 +109,22 @@ impl Scenario {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));
         }
+        if self.clearance > MAX_CLEARANCE {
+            let expected = format!("0 to {MAX_CLEARANCE} voxels");
+            return Err(ScenarioError::setting(
+                "clearance",
+                self.clearance,
+                expected,
+            ));
+        }
+        if self.range <= self.clearance {
+            let least = self.clearance + 1;
+            let expected = format!(
+                "{least} voxels or more, with --clearance {}",
+                self.clearance
+            );
+            return Err(ScenarioError::setting("range", self.range, expected));
+        }
         if self.planner != Planner::VoxelSurvey && !self.field.is_whole() {
             return Err(ScenarioError::NotHere {
                 option: "sensor",
@@ -100,7 +132,7 @@ impl Scenario {
             });
         }
         if let Some(start) = self.start {
-            check_start(start, scene)?;
+            check_start(start, scene, self.clearance)?;
         }
         let (extent, levels) = (scene.extent(), scene.levels());
         let sides = 1..=LARGEST;
@@ -123,9 +155,21 @@ impl Scenario {
     /// # Errors
     /// There is no room for a robot.
     pub(crate) fn start_in(&self, scene: &Scene) -> Result<Voxel, ScenarioError> {
-        let start = self.start.or_else(|| scene.start());
-        start.ok_or(ScenarioError::NoPose)
+        let start = self.start.or_else(|| scene.start(self.clearance));
+        start.ok_or(no_pose(self.clearance))
     }
+}
+
+const fn one() -> u8 {
+    1
+}
+
+fn is_one(clearance: &u8) -> bool {
+    *clearance == one()
+}
+
+const fn no_pose(clearance: u8) -> ScenarioError {
+    ScenarioError::NoPose(BodyText(clearance))
 }
 
 const fn all_round() -> Field {
@@ -134,16 +178,22 @@ const fn all_round() -> Field {
 
 /// # Errors
 /// A robot has no room at `start`; with the nearest place where it has.
-fn check_start(start: Voxel, scene: &Scene) -> Result<(), ScenarioError> {
-    if scene.is_pose(start) {
+fn check_start(start: Voxel, scene: &Scene, clearance: u8) -> Result<(), ScenarioError> {
+    if scene.is_pose(start, clearance) {
         return Ok(());
     }
-    let nearest = scene.nearest_pose(start).ok_or(ScenarioError::NoPose)?;
+    let nearest = scene.nearest_pose(start, clearance);
+    let nearest = nearest.ok_or(no_pose(clearance))?;
     let (found, nearest) = match scene.frame() {
         None => (start.to_string(), nearest.to_string()),
         Some(frame) => (metres(frame.middle(start)), metres(frame.middle(nearest))),
     };
-    Err(ScenarioError::NoRoomAt { found, nearest })
+    let body = BodyText(clearance);
+    Err(ScenarioError::NoRoomAt {
+        found,
+        body,
+        nearest,
+    })
 }
 
 fn metres([x, y, z]: [f64; 3]) -> String {

@@ -42,13 +42,19 @@ fn around(eye: Voxel, range: u8) -> impl Iterator<Item = Voxel> {
     voxels.filter(move |voxel| eye.distance_squared(*voxel) <= u32::from(range).pow(2))
 }
 
-/// The occupied voxels that can be seen from any place that can be reached from `start`, in
-/// any heading, with their middle in the field.
+/// The occupied voxels that can be seen from any place that a robot of this clearance can reach
+/// from `start`, in any heading, with their middle in the field.
 ///
 /// Cost: for each occupied voxel beside a free one, a ray to the nearest such place that
 /// sees it; to all within range if none does.
-pub(crate) fn visible(scene: &Scene, start: Voxel, range: u8, field: Field) -> Marks {
-    let reached = scene.reached(start);
+pub(crate) fn visible(
+    scene: &Scene,
+    start: Voxel,
+    clearance: u8,
+    range: u8,
+    field: Field,
+) -> Marks {
+    let reached = scene.reached(start, clearance);
     let centre = Voxel::new(0, 0, 0);
     let mut offsets: Vec<Voxel> = around(centre, range)
         .filter(|&eye| Heading::all().any(|heading| field.shows(eye, heading, centre)))

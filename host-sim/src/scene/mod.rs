@@ -14,7 +14,7 @@ mod space;
 mod stl;
 
 use planner_core::Extent;
-use planner_core::volume::{Content, Voxel};
+use planner_core::volume::{Content, Voxel, body_voxels};
 use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
@@ -266,10 +266,11 @@ impl Scene {
         )
     }
 
-    /// Whether a robot may be at `voxel`: it is free, and its neighbours are not solid.
-    pub fn is_pose(&self, voxel: Voxel) -> bool {
+    /// Whether a robot of this clearance may be at `voxel`: it is free, and its body touches
+    /// nothing solid.
+    pub fn is_pose(&self, voxel: Voxel, clearance: u8) -> bool {
         self.content(voxel) == Some(Content::Free)
-            && voxel.beside().iter().all(|&v| !self.is_solid(v))
+            && body_voxels(clearance, voxel).all(|at| !self.is_solid(at))
     }
 
     /// All voxels, level by level.

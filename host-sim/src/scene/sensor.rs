@@ -101,8 +101,11 @@ impl Sensor {
         }
     }
 
-    /// The sensor with this field, and a camera's image; `None`: none of these has it.
+    /// The sensor with this field, however far it feels, and a camera's image; `None`: none of
+    /// these has it.
     pub fn of(field: Field) -> Option<(Self, Fov)> {
+        let near = Field::ALL_ROUND.near;
+        let field = Field { near, ..field };
         let degrees = |half: u16| (f64::from(half) / 256.0).atan().to_degrees() * 2.0;
         let fov = field.side.and_then(|side| {
             Fov::new(

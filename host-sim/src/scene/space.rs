@@ -5,22 +5,22 @@ use planner_core::volume::Voxel;
 use super::{Marks, Scene};
 
 impl Scene {
-    /// The places that a robot reaches from `start`.
-    pub(super) fn reached(&self, start: Voxel) -> Marks {
+    /// The places that a robot of this clearance reaches from `start`.
+    pub(super) fn reached(&self, start: Voxel, clearance: u8) -> Marks {
         let mut reached = Marks::of(self);
         reached.insert(self, start);
-        self.flood(start, &mut reached);
+        self.flood(start, clearance, &mut reached);
         reached
     }
 
     /// Marks what is reached from `start`, and gives all of it.
-    fn flood(&self, start: Voxel, reached: &mut Marks) -> Vec<Voxel> {
+    fn flood(&self, start: Voxel, clearance: u8, reached: &mut Marks) -> Vec<Voxel> {
         let mut places = vec![start];
         let mut next = 0;
         while let Some(&at) = places.get(next) {
             next += 1;
             for beside in at.beside() {
-                if self.is_pose(beside) && reached.insert(self, beside) {
+                if self.is_pose(beside, clearance) && reached.insert(self, beside) {
                     places.push(beside);
                 }
             }
@@ -31,18 +31,19 @@ impl Scene {
     /// Where robots start unless told otherwise: above the ground near the north-west
     /// corner, or wherever there is room first. In a scene from a file it is the place of
     /// the largest room that is nearest to that corner; a room is what one can fly about in.
-    pub fn start(&self) -> Option<Voxel> {
+    pub fn start(&self, clearance: u8) -> Option<Voxel> {
         let corner = Voxel::new(2, 2, 2);
         let distance = |voxel: &Voxel| voxel.distance_squared(corner);
         if self.frame.is_none() {
-            let places = self.voxels().filter(|at| at.z >= 2 && self.is_pose(*at));
+            let places = self.voxels();
+            let places = places.filter(|at| at.z >= 2 && self.is_pose(*at, clearance));
             return places.min_by_key(distance);
         }
         let mut reached = Marks::of(self);
         let mut largest = Vec::new();
         for at in self.voxels() {
-            if self.is_pose(at) && reached.insert(self, at) {
-                let room = self.flood(at, &mut reached);
+            if self.is_pose(at, clearance) && reached.insert(self, at) {
+                let room = self.flood(at, clearance, &mut reached);
                 if room.len() > largest.len() {
                     largest = room;
                 }
@@ -51,9 +52,9 @@ impl Scene {
         largest.into_iter().min_by_key(distance)
     }
 
-    /// The place for a robot that is nearest to `voxel`.
-    pub fn nearest_pose(&self, voxel: Voxel) -> Option<Voxel> {
-        let places = self.voxels().filter(|at| self.is_pose(*at));
+    /// The place for a robot of this clearance that is nearest to `voxel`.
+    pub fn nearest_pose(&self, voxel: Voxel, clearance: u8) -> Option<Voxel> {
+        let places = self.voxels().filter(|at| self.is_pose(*at, clearance));
         places.min_by_key(|at| at.distance_squared(voxel))
     }
 

@@ -27,7 +27,9 @@ pub struct Summary {
     pub planner: Planner,
     /// Sensor range in voxels.
     pub range: u8,
-    /// What of that their sensors show.
+    /// Voxels that they reach beyond the one of their middle.
+    pub clearance: u8,
+    /// What of that range their sensors show.
     pub sensor: String,
     /// Side of a voxel in metres, where the scene says so.
     pub voxel_size: Option<f64>,
@@ -96,6 +98,7 @@ impl Summary {
             violations: trace.violations,
             planner: scenario.planner,
             range: scenario.range,
+            clearance: scenario.clearance,
             sensor: Sensor::name_of(scenario.field),
             voxel_size: trace.scene.frame().map(|frame| frame.voxel_size),
             free_space: trace.scene.free(),

@@ -6,11 +6,14 @@
 //! associative and idempotent. Outside of the box everything counts as known; nothing
 //! is there, and nothing flies there.
 
+mod body;
 mod field;
 mod layer;
 mod sight;
 mod view;
 
+pub use body::{MAX_CLEARANCE, body_voxels};
+pub(crate) use body::{voxel_work, word_work};
 pub use field::{Field, Heading};
 pub(crate) use layer::Layer;
 pub use sight::in_sight;
@@ -18,8 +21,8 @@ pub(crate) use view::{MAX_REACH, View};
 
 use core::fmt;
 
-use crate::cell::{Cell, Direction, Extent, ExtentError};
-use crate::tile::{MOST_TILES, TILE, TileIndex, carried, every_tile, neighbours, shifted};
+use crate::cell::{Cell, Extent, ExtentError};
+use crate::tile::{MOST_TILES, TILE, TileIndex, every_tile, neighbours};
 
 /// One cube of a box. The unit is the cube's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -282,31 +285,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
         self.known.word(tile, z) & !self.occupied.word(tile, z)
     }
 
-    /// Whether a robot may be at `voxel`: it is free, and so is every voxel that shares
-    /// a face with it. Cost: at most 10 words.
-    pub fn is_pose(&self, voxel: Voxel) -> bool {
-        let Some((tile, z, bit)) = voxel.place().filter(|_| self.contains(voxel)) else {
-            return false;
-        };
-        let about = Direction::ALL
-            .into_iter()
-            .fold(bit, |about, direction| about | shifted(bit, direction));
-        let is_free_in_tile = self.bad(tile, z) & about == 0
-            && (self.bad(tile, z.wrapping_add(1)) | self.bad(tile, z.wrapping_sub(1))) & bit == 0;
-        is_free_in_tile
-            && Direction::ALL.into_iter().all(|direction| {
-                let beyond = carried(bit, direction);
-                beyond == 0 || self.bad(tile.beside(direction), z) & beyond == 0
-            })
-    }
-
-    /// Those of a tile of a level. Cost: 14 words.
-    pub(crate) fn poses(&self, tile: TileIndex, z: u8) -> u64 {
-        let bad = self.bad(tile, z) | beside(tile, z, |tile, z| self.bad(tile, z));
-        self.inside(tile, z) & !bad
-    }
-
-    /// The voxels of a tile of a level that are not free: no robot may be beside them.
+    /// The voxels of a tile of a level that are not free.
     pub(crate) fn bad(&self, tile: TileIndex, z: u8) -> u64 {
         match self.free(tile, z) {
             u64::MAX => 0,

@@ -21,7 +21,7 @@ fn all() -> impl Iterator<Item = Voxel> {
 proptest! {
     #[test]
     fn poses_of_a_tile_are_those_of_its_voxels(
-        learnt in prop::collection::vec((voxel(), prop::bool::weighted(0.1)), 0..1500),
+        learnt in prop::collection::vec((voxel(), prop::bool::weighted(0.02)), 0..3000),
     ) {
         let mut map = map();
         for &(voxel, occupied) in &learnt {
@@ -29,8 +29,12 @@ proptest! {
         }
         for voxel in all().filter(|&voxel| map.contains(voxel)) {
             let (tile, z, bit) = voxel.place().unwrap();
-            let word = map.poses(tile, z);
-            prop_assert_eq!(word & bit != 0, map.is_pose(voxel));
+            let is_free = |voxel| map.content(voxel) == Content::Free;
+            for clearance in 0..=MAX_CLEARANCE {
+                let is_pose = body_voxels(clearance, voxel).all(is_free);
+                prop_assert_eq!(map.is_pose(voxel, clearance), is_pose, "{} {}", voxel, clearance);
+                prop_assert_eq!(map.poses(tile, z, clearance) & bit != 0, is_pose);
+            }
         }
         let known: std::collections::BTreeSet<_> =
             learnt.iter().map(|l| l.0).filter(|&v| map.contains(v)).collect();
@@ -93,6 +97,34 @@ proptest! {
             assert!(off.iter().all(|&o| o <= 1.0), "{from:?} {to:?} {at:?}");
             true
         });
+    }
+}
+
+/// What the completeness of surveys rests on: from a place for a body, the body one voxel on
+/// is in sight over the two bodies alone.
+#[test]
+fn the_next_body_is_in_sight() {
+    let here = Voxel::new(0, 0, 0);
+    for clearance in 0..=MAX_CLEARANCE {
+        let own: Vec<Voxel> = body_voxels(clearance, here).collect();
+        let size = [1, 7, 33, 123][usize::from(clearance)];
+        assert_eq!(own.len(), size);
+        let reach = u32::from(clearance);
+        assert!(
+            own.iter()
+                .all(|at| here.distance_squared(*at) <= reach * reach)
+        );
+        for next in here.beside() {
+            let there: Vec<Voxel> = body_voxels(clearance, next).collect();
+            for &voxel in &there {
+                assert!(here.distance_squared(voxel) <= (reach + 1) * (reach + 1));
+                let is_free = |at| own.contains(&at) || there.contains(&at);
+                assert!(
+                    in_sight(here, voxel, is_free),
+                    "{clearance}: {voxel} from {next}"
+                );
+            }
+        }
     }
 }
 

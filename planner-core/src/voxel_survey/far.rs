@@ -2,7 +2,7 @@
 
 use super::{SLICE, VoxelSurvey, WAY};
 use crate::tile::TileIndex;
-use crate::volume::{Layer, Volume, Voxel, beside};
+use crate::volume::{Layer, Volume, Voxel, beside, word_work};
 
 /// Work of a word that the wave may enter, and of a step back.
 const WORD: u32 = 7;
@@ -169,18 +169,25 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         (self.low.word(tile, z) ^ low) & (self.high.word(tile, z) ^ high)
     }
 
-    /// Lets the wave into the word at the cursor, but not into `closed` voxels.
-    fn spread_into_tile(&mut self, volume: &Volume<TW, TH, L>, closed: &Layer<TW, TH, L>) {
+    /// Lets the wave of a body into the word at the cursor, but not into `closed` voxels; gives
+    /// the work.
+    fn spread_into_tile(
+        &mut self,
+        volume: &Volume<TW, TH, L>,
+        clearance: u8,
+        closed: &Layer<TW, TH, L>,
+    ) -> u32 {
         let (tile, z) = self.cursor;
         let reached = self.low.word(tile, z) | self.high.word(tile, z);
         let before = (self.layer + 2) % 3;
         let next = beside(tile, z, |tile, z| self.at(before, tile, z)) & !reached;
         if next == 0 {
-            return;
+            return WORD;
         }
-        let new = next & volume.poses(tile, z) & !closed.word(tile, z);
+        let work = WORD + word_work(clearance);
+        let new = next & volume.poses(tile, z, clearance) & !closed.word(tile, z);
         if new == 0 {
-            return;
+            return work;
         }
         if self.layer != 1 {
             self.low.add(tile, z, new);
@@ -189,6 +196,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             self.high.add(tile, z, new);
         }
         self.enter(tile, z, new);
+        work
     }
 }
 
@@ -208,8 +216,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn spread(&mut self, known: u32) -> Found {
         let (columns, _) = self.volume.extent().tiles();
         while self.work < SLICE {
-            self.work = self.work.saturating_add(WORD);
-            self.far.spread_into_tile(&self.volume, &self.closed);
+            let work = self
+                .far
+                .spread_into_tile(&self.volume, self.clearance, &self.closed);
+            self.work = self.work.saturating_add(work);
             let (tile, z) = self.far.cursor;
             let reached = self.far.at(self.far.layer, tile, z);
             let open = reached & !self.done.word(tile, z) & !self.far.passed;

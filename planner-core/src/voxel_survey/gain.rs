@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use super::{SLICE, VoxelSurvey};
 use crate::tile::{TileIndex, bits};
-use crate::volume::{Heading, View, Voxel};
+use crate::volume::{Heading, View, Voxel, word_work};
 
 /// Work of a word of which the poses are found.
 const WORD: u32 = 10;
@@ -37,8 +37,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             let mut open = self.volume.free(tile, z) & !self.done.word(tile, z) & !self.passed;
             self.work = self.work.saturating_add(1);
             if open != 0 {
-                open &= self.volume.poses(tile, z);
-                self.work = self.work.saturating_add(WORD);
+                open &= self.volume.poses(tile, z, self.clearance);
+                let work = WORD + word_work(self.clearance);
+                self.work = self.work.saturating_add(work);
             }
             if open == 0 {
                 self.passed = 0;

@@ -1,19 +1,22 @@
 //! A fleet that surveys a box of voxels completely: streets, undersides, rooms.
 //!
-//! A robot flies from voxel to voxel through faces, over *poses*: known free voxels all
-//! of whose neighbours are known and free. A pose is *done* once the robot has looked
+//! A robot flies from voxel to voxel through faces, over *poses*: voxels where its body is
+//! known to be free, the ball of all within its [`clearance`](Config::clearance) c. With a
+//! clearance of 1 it is a free voxel with its neighbours. A pose is *done* once the robot has looked
 //! from it, or once no unknown voxel is in sight of it, where unknown voxels do not
 //! block sight. The robot flies to poses that are not done; when none is left that it
 //! can reach, it stops.
 //!
 //! # Why this is complete
 //! Claim: when the robot stops, every voxel that can be seen from any place that can be
-//! reached is known, or it says what kept it from that. Let P be the voxels that are free with free neighbours, reached
+//! reached is known, or it says what kept it from that. Let P be the voxels about which a body
+//! is free, reached
 //! from the start over others of P. Each pose that the robot reaches is done. From a
 //! done pose q everything in sight is known: it was looked at, or nothing unknown was in
-//! sight, and sight only shrinks as more becomes known. A neighbour p of q in P and p's
-//! neighbours are in sight of q if the range is at least 2: straight through p, or over
-//! the edge between p and another neighbour of q, which is free. So p is a pose, and by
+//! sight, and sight only shrinks as more becomes known. The body about a neighbour p of q in P
+//! is in sight of q if the range is at least c + 1: none of it is farther, and the rays to it
+//! pass no voxel but those of the bodies about q and p, which are free (all of them are tried
+//! by a test). So p is a pose, and by
 //! induction all of P are. Each look or check makes one more pose done, and there are
 //! finitely many, so the robot stops. What it leaves to rivals changes only which pose
 //! comes first: a search ends without a pose only if none of those that it reached shows
@@ -22,8 +25,8 @@
 //! A sensor that does not show all round ([`Field`]) looks in several directions, wherever it
 //! is turned: what can be seen is then what is in its field in some heading, and a pose is done
 //! once each heading was looked at, or shows nothing unknown. The robot turns while it flies
-//! and in place, there only to see more. Neighbours of neighbours are in sight as before if it
-//! feels what is within two voxels; else P is smaller.
+//! and in place, there only to see more. The next body is in sight as before if it
+//! feels what is within c + 1 voxels ([`Field::near`]); else P is smaller.
 //!
 //! That rests on what a look shows: every voxel within range that is in the field and in sight
 //! over free ones. One that a look should have shown and did not is noted, and looked for from every
@@ -56,7 +59,7 @@
 //!
 //! Steps without a good pose are outside of all counts: nothing is decided in them.
 //!
-//! Robots are smaller than a voxel: several may share one. What others tell only saves
+//! Robots do not stand in each other's way: several may share a voxel. What others tell only saves
 //! looks; nothing waits for it.
 //!
 //! One step of a robot is [`observe`](VoxelSurvey::observe); then
@@ -82,7 +85,7 @@ use crate::radio::{
 };
 use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
 use crate::tile::TileIndex;
-use crate::volume::{Field, Heading, Layer, MAX_REACH, Volume, Voxel, VoxelPatch};
+use crate::volume::{Field, Heading, Layer, MAX_CLEARANCE, MAX_REACH, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
 use far::Far;
 use news::News;
@@ -111,12 +114,36 @@ pub const MAX_RANGE: u8 = MAX_REACH;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Config {
-    /// Sensor range in voxels, 2 to [`MAX_RANGE`]; others are brought into these bounds.
+    /// Sensor range in voxels, 2 to [`MAX_RANGE`] and one more than the clearance at least;
+    /// others are brought into these bounds.
     pub range: u8,
+    /// How far the body of a robot reaches beyond the voxel of its middle, 0 to
+    /// [`MAX_CLEARANCE`]; more counts as that. With 0 it stays in its voxel, with 1 those that
+    /// share a face with it are kept free, then all within so many voxels. A ball of 0.5,
+    /// 0.70, 1.58 and 2.54 voxels' radius touches nothing.
+    pub clearance: u8,
     /// What of that the sensors show.
     pub field: Field,
     /// How the robots use the radio. Its origin is that of the lowest level.
     pub link: LinkConfig,
+}
+
+impl Config {
+    /// A range of 8 voxels all round, and a voxel kept clear.
+    pub const fn new() -> Self {
+        Self {
+            range: 8,
+            clearance: 1,
+            field: Field::ALL_ROUND,
+            link: LinkConfig::new(),
+        }
+    }
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 /// The planner of one robot over a box of at most 8·`TW` × 8·`TH` × `L` voxels.
@@ -125,6 +152,7 @@ pub struct Config {
 #[derive(Clone, Debug)]
 pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     range: u8,
+    clearance: u8,
     field: Field,
     volume: Volume<TW, TH, L>,
     done: Layer<TW, TH, L>,
@@ -176,6 +204,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub const fn vacant() -> Self {
         Self {
             range: 0,
+            clearance: 0,
             field: Field::NONE,
             volume: Volume::vacant(),
             done: Layer::EMPTY,
@@ -242,7 +271,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             origin_mm, cell_mm, ..
         } = config.link;
         let grid = GridId::of_box(extent, levels, origin_mm, cell_mm);
-        self.range = config.range.clamp(2, MAX_RANGE);
+        self.clearance = config.clearance.min(MAX_CLEARANCE);
+        self.range = config.range.clamp(2.max(self.clearance + 1), MAX_RANGE);
         self.field = config.field;
         self.position = Voxel::new(0, 0, 0);
         self.turn_to = Turn::NONE;
@@ -568,7 +598,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         let next = self.way.pop()?;
         let is_beside = self.position.distance_squared(next) == 1;
-        if is_beside && self.volume.is_pose(next) && !self.closed.get(next) {
+        if is_beside && self.volume.is_pose(next, self.clearance) && !self.closed.get(next) {
             return Some(Action::Move(next));
         }
         self.way.clear();

@@ -5,7 +5,7 @@ use heapless::Vec;
 use super::VoxelSurvey;
 use crate::list;
 use crate::robot::Action;
-use crate::volume::Voxel;
+use crate::volume::{Voxel, voxel_work};
 
 /// Poses around the robot that are considered.
 const POSES: usize = 512;
@@ -33,6 +33,10 @@ const RIVALS_SHARE: f32 = 0.25;
 
 /// Work of a voxel that is considered.
 const POSE: u32 = 4;
+
+/// Work on them after which no further ones are: room for views is left. Only wide bodies take
+/// so much.
+const MOST_POSES: u32 = super::SLICE / 2;
 
 /// Steps that a flight costs beside its length.
 const START: u32 = 2;
@@ -173,16 +177,21 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         };
         visit(here);
         let _ = places.push(Place::OWN);
+        let pose = POSE + voxel_work(self.clearance);
+        let most = self.work.saturating_add(MOST_POSES);
         for number in 0..POSES {
             let Some(&place) = places.get(number) else {
                 break;
             };
+            if self.work >= most {
+                break;
+            }
             for at in place.at(here).beside() {
                 if places.is_full() || !visit(at) {
                     continue;
                 }
-                self.work = self.work.saturating_add(POSE);
-                if self.volume.is_pose(at) && !self.closed.get(at) {
+                self.work = self.work.saturating_add(pose);
+                if self.volume.is_pose(at, self.clearance) && !self.closed.get(at) {
                     let _ = places.push(place.next(number as u16, at, here));
                 }
             }

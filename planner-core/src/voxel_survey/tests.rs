@@ -4,8 +4,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::volume::Content;
-use crate::volume::in_sight;
+use crate::volume::{Content, body_voxels, in_sight};
 
 mod fields;
 
@@ -15,8 +14,7 @@ const RANGE: u8 = 4;
 
 const CONFIG: Config = Config {
     range: RANGE,
-    field: Field::ALL_ROUND,
-    link: LinkConfig::new(),
+    ..Config::new()
 };
 
 type Robot = VoxelSurvey<2, 2, 7>;
@@ -40,13 +38,14 @@ fn look(walls: &BTreeSet<Voxel>, eye: Voxel) -> Vec<(Voxel, bool)> {
         .collect()
 }
 
+/// Whether a body touches no wall.
+fn is_clear(walls: &BTreeSet<Voxel>, clearance: u8, voxel: Voxel) -> bool {
+    is_inside(voxel) && body_voxels(clearance, voxel).all(|at| !walls.contains(&at))
+}
+
 /// The places that can be reached, by brute force.
-fn reached(walls: &BTreeSet<Voxel>, start: Voxel) -> Vec<Voxel> {
-    let is_pose = |voxel: Voxel| {
-        is_inside(voxel)
-            && !walls.contains(&voxel)
-            && voxel.beside().iter().all(|beside| !walls.contains(beside))
-    };
+fn reached(walls: &BTreeSet<Voxel>, start: Voxel, clearance: u8) -> Vec<Voxel> {
+    let is_pose = |voxel| is_clear(walls, clearance, voxel);
     let mut reached = Vec::from([start]);
     let mut next = 0;
     while let Some(&at) = reached.get(next) {
@@ -61,8 +60,8 @@ fn reached(walls: &BTreeSet<Voxel>, start: Voxel) -> Vec<Voxel> {
 }
 
 /// Every voxel that is seen from any of them.
-fn visible(walls: &BTreeSet<Voxel>, start: Voxel) -> BTreeSet<Voxel> {
-    let views = reached(walls, start);
+fn visible(walls: &BTreeSet<Voxel>, start: Voxel, clearance: u8) -> BTreeSet<Voxel> {
+    let views = reached(walls, start, clearance);
     let views = views.iter().flat_map(|&eye| look(walls, eye));
     views.map(|(voxel, _)| voxel).collect()
 }
@@ -101,9 +100,8 @@ fn scene(scattered: &Scattered, slabs: &Slabs) -> BTreeSet<Voxel> {
                 && (z..z + high).contains(&v.z)
         }));
     }
-    walls.remove(&START);
-    for beside in START.beside() {
-        walls.remove(&beside);
+    for voxel in body_voxels(CONFIG.clearance, START) {
+        walls.remove(&voxel);
     }
     walls
 }
@@ -308,16 +306,21 @@ fn late_frames_are_old_news() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(96))]
 
     /// Everything that can be seen from anywhere that can be reached is seen, and the
     /// robot never touches anything.
     #[test]
     fn all_that_can_be_seen_is_seen(
         (scattered, slabs) in walls(),
+        clearance in 0u8..=2,
     ) {
-        let walls = scene(&scattered, &slabs);
-        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+        let mut walls = scene(&scattered, &slabs);
+        for voxel in body_voxels(clearance, START) {
+            walls.remove(&voxel);
+        }
+        let config = Config { clearance, ..CONFIG };
+        let mut robot = Robot::new(config, RobotId(0), EXTENT, LEVELS).unwrap();
         let mut at = START;
         let mut steps = 0;
         loop {
@@ -327,8 +330,7 @@ proptest! {
             match action {
                 Action::Move(to) => {
                     prop_assert_eq!(at.distance_squared(to), 1);
-                    prop_assert!(is_inside(to) && !walls.contains(&to));
-                    prop_assert!(to.beside().iter().all(|beside| !walls.contains(beside)));
+                    prop_assert!(is_clear(&walls, clearance, to));
                     at = to;
                 }
                 Action::Wait => {}
@@ -341,7 +343,7 @@ proptest! {
             steps += 1;
             prop_assert!(steps < 20_000);
         }
-        for voxel in visible(&walls, START) {
+        for voxel in visible(&walls, START, clearance) {
             prop_assert!(robot.volume().content(voxel) != crate::volume::Content::Unknown, "{voxel:?}");
         }
     }

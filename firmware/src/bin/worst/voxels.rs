@@ -4,10 +4,10 @@ use core::fmt::{self, Write as _};
 
 use cortex_m_semihosting::hio;
 use firmware::Stopwatch;
-use planner_core::radio::{LinkConfig, MAX_LEN};
+use planner_core::radio::MAX_LEN;
 use planner_core::rng::Rng;
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Field, Voxel, VoxelPatch};
+use planner_core::volume::{Voxel, VoxelPatch};
 use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, RobotId};
 use static_cell::ConstStaticCell;
@@ -188,8 +188,7 @@ type Robot = VoxelSurvey<5, 5, 16>;
 fn reset(robot: &mut Robot, id: RobotId) {
     let config = Config {
         range: RANGE,
-        field: Field::ALL_ROUND,
-        link: LinkConfig::new(),
+        ..Config::new()
     };
     let _ = robot.reset(config, id, Extent::new(40, 40), LEVELS as u8);
 }

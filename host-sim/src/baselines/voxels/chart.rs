@@ -4,17 +4,26 @@
 use std::collections::BTreeSet;
 
 use planner_core::Extent;
-use planner_core::volume::{Content, Voxel, in_sight};
+use planner_core::volume::{Content, Voxel, body_voxels, in_sight};
 
 /// Side of a block of voxels, the unit in which changes are noted.
 const BLOCK: i16 = 8;
+
+/// What planners have to know of robots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Body {
+    /// How far their sensors show, in voxels.
+    pub range: u8,
+    /// Voxels that they reach beyond the one of their middle.
+    pub clearance: u8,
+}
 
 /// What is known, where frontiers are, and what places show.
 #[derive(Clone, Debug)]
 pub struct Chart {
     extent: Extent,
     levels: u8,
-    range: u8,
+    body: Body,
     contents: Vec<Content>,
     /// Whether a robot may be there.
     poses: Vec<bool>,
@@ -37,13 +46,13 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Of a box of which nothing is known, for a sensor that reaches `range` voxels.
-    pub fn new(extent: Extent, levels: u8, range: u8) -> Self {
+    /// Of a box of which nothing is known, for robots that are all the same.
+    pub fn new(extent: Extent, levels: u8, body: Body) -> Self {
         let size = extent.cells() as usize * usize::from(levels);
         let mut chart = Self {
             extent,
             levels,
-            range,
+            body,
             contents: vec![Content::Unknown; size],
             poses: vec![false; size],
             frontiers: BTreeSet::new(),
@@ -52,7 +61,7 @@ impl Chart {
             changed: Vec::new(),
             barren: vec![0; size],
             shown_from: vec![(0, Vec::new()); size],
-            ball: ball(range),
+            ball: ball(body.range),
             lines: 0,
         };
         let [x, y, z] = chart.blocks();
@@ -92,7 +101,8 @@ impl Chart {
             }
         }
         for voxel in changed {
-            for at in std::iter::once(voxel).chain(voxel.beside()) {
+            // A frontier is beside it, a pose has it in its body.
+            for at in body_voxels(self.body.clearance.max(1), voxel) {
                 self.judge(at);
             }
         }
@@ -105,7 +115,7 @@ impl Chart {
         };
         let beside = voxel.beside();
         let is_free = |at: &Voxel| self.content(*at) == Content::Free;
-        let is_pose = is_free(&voxel) && beside.iter().all(is_free);
+        let is_pose = body_voxels(self.body.clearance, voxel).all(|at| is_free(&at));
         let is_known_free = |at: &Voxel| self.index(*at).is_some() && is_free(at);
         let is_frontier =
             self.contents[index] == Content::Unknown && beside.iter().any(is_known_free);
@@ -128,7 +138,7 @@ impl Chart {
 
     /// The sensor's range.
     pub(super) fn range(&self) -> u8 {
-        self.range
+        self.body.range
     }
 
     /// Number of voxels.
@@ -141,7 +151,7 @@ impl Chart {
         self.lines
     }
 
-    /// Whether a robot may be at `voxel`: it and what is beside it are known to be free.
+    /// Whether a robot may be at `voxel`: its body is known to be free.
     pub fn is_pose(&self, voxel: Voxel) -> bool {
         self.index(voxel).is_some_and(|index| self.poses[index])
     }
@@ -159,7 +169,7 @@ impl Chart {
         if self.is_as_after(self.barren[index], place) {
             return false;
         }
-        let most = u32::from(self.range).pow(2);
+        let most = u32::from(self.body.range).pow(2);
         let mut lines = 0;
         let is_shown = self.blocks_about(place).any(|block| {
             self.of_block[block].iter().any(|&frontier| {
@@ -219,7 +229,7 @@ impl Chart {
 
     /// The blocks that reach within range of `middle`, or beside that.
     fn blocks_about(&self, middle: Voxel) -> impl Iterator<Item = usize> + use<> {
-        let reach = i16::from(self.range) + 1;
+        let reach = i16::from(self.body.range) + 1;
         let [width, height, levels] = self.blocks();
         let span = move |at: i16, side: usize| {
             let first = (at - reach).max(0) / BLOCK;

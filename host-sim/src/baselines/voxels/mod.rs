@@ -10,7 +10,7 @@ mod wave;
 
 use planner_core::volume::Voxel;
 
-pub use chart::Chart;
+pub use chart::{Body, Chart};
 use wave::Wave;
 
 /// The first step to the nearest place that shows a frontier, and the number of places and
@@ -138,9 +138,16 @@ mod tests {
     use super::*;
     use crate::scene::{Scene, look};
 
+    fn body(range: u8) -> Body {
+        Body {
+            range,
+            clearance: 1,
+        }
+    }
+
     /// A tunnel along x, `known` and free between walls, five voxels wide and high.
     fn tunnel(length: u16, known: Range<i16>, range: u8) -> Chart {
-        let mut chart = Chart::new(Extent::new(length, 5), 5, range);
+        let mut chart = Chart::new(Extent::new(length, 5), 5, body(range));
         let planes = (0..5).flat_map(|z| (0..5).map(move |y| (y, z)));
         let voxels = planes.flat_map(|(y, z)| known.clone().map(move |x| Voxel::new(x, y, z)));
         let is_wall = |at: Voxel| [0, 4].contains(&at.y) || [0, 4].contains(&at.z);
@@ -180,9 +187,9 @@ mod tests {
     #[test]
     fn what_is_remembered_still_holds() {
         let scene = Scene::town(3, 24);
-        let new = || Chart::new(scene.extent(), scene.levels(), 5);
+        let new = || Chart::new(scene.extent(), scene.levels(), body(5));
         let mut chart = new();
-        let mut here = scene.start().unwrap();
+        let mut here = scene.start(1).unwrap();
         let mut views = Vec::new();
         for _ in 0..60 {
             views.push(look(&scene, here, 5));
@@ -191,7 +198,7 @@ mod tests {
             views.iter().for_each(|view| afresh.learn(view));
             let to = closest(&mut chart, here).0;
             assert_eq!(to, closest(&mut afresh, here).0);
-            let robots = [here, scene.start().unwrap()];
+            let robots = [here, scene.start(1).unwrap()];
             let orders = assign(&mut chart, &robots).0;
             assert_eq!(orders, assign(&mut afresh, &robots).0);
             here = to.unwrap();

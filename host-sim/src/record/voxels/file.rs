@@ -185,8 +185,13 @@ impl VoxelTrace {
     /// records.
     fn look_again(&mut self) {
         let scene = &self.scene;
-        let Scenario { range, field, .. } = self.scenario;
-        let visible = visible(scene, self.ways[0][0], range, field);
+        let Scenario {
+            range,
+            clearance,
+            field,
+            ..
+        } = self.scenario;
+        let visible = visible(scene, self.ways[0][0], clearance, range, field);
         let mut known = Marks::of(scene);
         let mut looked = Marks::of(scene);
         let mut seen = 0;
@@ -224,8 +229,9 @@ impl VoxelTrace {
             }
         }
         let legs = self.ways.iter().flat_map(|way| way.windows(2));
-        let is_allowed =
-            |leg: &&[Voxel]| scene.is_pose(leg[1]) && leg[0].distance_squared(leg[1]) <= 1;
+        let is_allowed = |leg: &&[Voxel]| {
+            scene.is_pose(leg[1], clearance) && leg[0].distance_squared(leg[1]) <= 1
+        };
         self.violations = legs.filter(|leg| !is_allowed(leg)).count() as u32;
         self.visible = visible.count();
     }

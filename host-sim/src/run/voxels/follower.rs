@@ -6,7 +6,7 @@ use planner_core::volume::{Content, Heading, Voxel, VoxelPatch};
 use planner_core::{Action, Extent, RobotId, Status};
 
 use super::pilot::Pilot;
-use crate::baselines::voxels::{Chart, closest};
+use crate::baselines::voxels::{Body, Chart, closest};
 
 /// Steps without anything learnt after which the way out of `voxel_survey` is taken: as
 /// many as that planner waits before no rival counts.
@@ -28,8 +28,8 @@ pub(super) struct Follower {
 }
 
 impl Follower {
-    pub(super) fn new(inner: Box<dyn Pilot>, range: u8) -> Self {
-        let chart = Chart::new(inner.extent(), inner.levels(), range);
+    pub(super) fn new(inner: Box<dyn Pilot>, body: Body) -> Self {
+        let chart = Chart::new(inner.extent(), inner.levels(), body);
         Self {
             inner,
             chart,

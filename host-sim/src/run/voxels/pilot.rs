@@ -7,6 +7,7 @@ use planner_core::voxel_survey::{Config, VoxelSurvey};
 use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
 use super::follower::Follower;
+use crate::baselines::voxels::Body;
 use crate::run::Here;
 use crate::scenario::voxels::Planner;
 use crate::scene::Scene;
@@ -160,7 +161,12 @@ pub(super) fn pilot(
     let pilot = host.pilot(config, id, scene.extent(), scene.levels())?;
     Ok(match planner {
         Planner::VoxelSurvey => pilot,
-        Planner::ClosestFrontier | Planner::Greedy => Box::new(Follower::new(pilot, config.range)),
+        Planner::ClosestFrontier | Planner::Greedy => {
+            let Config {
+                range, clearance, ..
+            } = config;
+            Box::new(Follower::new(pilot, Body { range, clearance }))
+        }
     })
 }
 

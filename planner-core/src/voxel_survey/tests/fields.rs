@@ -11,8 +11,12 @@ const NARROW: Field = Field {
 
 const FIELDS: [Field; 4] = [Field::CAMERA, NARROW, Field::DOWNWARD, Field::LIDAR];
 
-fn robot(field: Field) -> Robot {
-    let config = Config { field, ..CONFIG };
+fn robot(field: Field, clearance: u8) -> Robot {
+    let config = Config {
+        field,
+        clearance,
+        ..CONFIG
+    };
     Robot::new(config, RobotId(0), EXTENT, LEVELS).unwrap()
 }
 
@@ -24,11 +28,13 @@ fn shown(field: Field, eye: Voxel, heading: Heading, view: &[(Voxel, bool)]) -> 
 
 /// Every voxel that is seen from any place that can be reached in any heading, by brute
 /// force.
-fn visible_in(field: Field, walls: &BTreeSet<Voxel>) -> BTreeSet<Voxel> {
-    let views = reached(walls, START).into_iter().flat_map(|eye| {
-        let view = look(walls, eye);
-        Heading::all().flat_map(move |heading| shown(field, eye, heading, &view))
-    });
+fn visible_in(field: Field, walls: &BTreeSet<Voxel>, clearance: u8) -> BTreeSet<Voxel> {
+    let views = reached(walls, START, clearance)
+        .into_iter()
+        .flat_map(|eye| {
+            let view = look(walls, eye);
+            Heading::all().flat_map(move |heading| shown(field, eye, heading, &view))
+        });
     views.map(|(voxel, _)| voxel).collect()
 }
 
@@ -42,9 +48,14 @@ proptest! {
         (scattered, slabs) in walls(),
         field in prop::sample::select(FIELDS.to_vec()),
         turn in 1u8..5,
+        clearance in 0u8..=2,
     ) {
-        let walls = scene(&scattered, &slabs);
-        let mut robot = robot(field);
+        let mut walls = scene(&scattered, &slabs);
+        for voxel in body_voxels(clearance, START) {
+            walls.remove(&voxel);
+        }
+        let field = Field { near: field.near.max(clearance + 1), ..field };
+        let mut robot = robot(field, clearance);
         let mut at = START;
         let mut heading = Heading::new(3);
         for steps in 0.. {
@@ -56,7 +67,7 @@ proptest! {
             match action {
                 Action::Move(to) => {
                     prop_assert_eq!(at.distance_squared(to), 1);
-                    prop_assert!(to.beside().iter().all(|beside| !walls.contains(beside)));
+                    prop_assert!(is_clear(&walls, clearance, to));
                     at = to;
                 }
                 Action::Wait => {}
@@ -66,7 +77,7 @@ proptest! {
                 }
             }
         }
-        for voxel in visible_in(field, &walls) {
+        for voxel in visible_in(field, &walls, clearance) {
             prop_assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel:?}");
         }
     }
@@ -83,7 +94,7 @@ proptest! {
         eighths in 0u8..8,
     ) {
         let walls = scene(&scattered, &slabs);
-        let mut robot = robot(field);
+        let mut robot = robot(field, 1);
         let mut at = START;
         let heading = Heading::new(eighths);
         for steps in 0.. {
@@ -98,7 +109,7 @@ proptest! {
                 }
                 Action::Stop(stop) => {
                     prop_assert!(stop.is_complete(), "{stop}");
-                    for voxel in visible_in(field, &walls) {
+                    for voxel in visible_in(field, &walls, 1) {
                         prop_assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel:?}");
                     }
                     break;
@@ -113,7 +124,7 @@ proptest! {
 #[test]
 fn a_camera_turns_only_to_see_more() {
     let walls: BTreeSet<Voxel> = all().filter(|voxel| voxel.z == 0).collect();
-    let mut robot = robot(Field::CAMERA);
+    let mut robot = robot(Field::CAMERA, 1);
     let (mut at, mut heading) = (START, Heading::EAST);
     let (mut turns, mut steps) = (0, 0);
     loop {

@@ -40,6 +40,8 @@ pub enum VoxelRequest<'a> {
     Pass,
     /// Tries again what was given up; [`VoxelReply::Done`].
     Resume,
+    /// Ticks that the robot's energy lasts for from now on; [`VoxelReply::Done`].
+    Energy(u32),
     /// [`VoxelReply::Frame`].
     Transmit,
     /// A frame; [`VoxelReply::Heard`].

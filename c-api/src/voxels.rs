@@ -250,6 +250,7 @@ pub extern "C" fn planner_voxel_create(
                 bytes_per_tick: config.bytes_per_tick,
                 key: (config.is_keyed != 0).then_some(Key(config.key)),
             },
+            ..Config::new()
         };
         let extent = Extent::new(config.width, config.depth);
         create(survey, config.id, config.bytes_per_tick)?

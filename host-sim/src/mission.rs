@@ -4,8 +4,7 @@ use clap::Args;
 use planner_core::survey;
 use serde::{Deserialize, Serialize};
 
-/// What robots are sent out with. Nothing of it by default; for the explorer and for surveys over
-/// heights.
+/// What robots are sent out with. Nothing of it by default; for the explorer, and in the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Mission {
@@ -40,13 +39,13 @@ impl Mission {
 /// The options that set a [`Mission`].
 #[derive(Args, Clone, Copy)]
 pub struct MissionArgs {
-    /// A robot that has explored goes home, to where it started, before it stops. Explorer,
-    /// and surveys over heights.
+    /// A robot that has explored goes home, to where it started, before it stops. For the
+    /// explorer, and in the air.
     #[arg(long)]
     come_home: bool,
     /// Steps that a robot's energy lasts for: it turns back in time, and stops at home. With
-    /// --resume it goes on with as much again. Explorer, and surveys over heights, where
-    /// hovering takes as much as a step.
+    /// --resume it goes on with as much again. For the explorer, and in the air, where hovering
+    /// takes as much as a step.
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     energy: Option<u32>,
 }

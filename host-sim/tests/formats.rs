@@ -118,7 +118,7 @@ fn summaries_and_traces() {
         "explore map.txt --out 3 --clearance 1 --start spread --robots 1 --max-ticks 9".into(),
         "explore map.txt --out 4 --restore saved --max-ticks 9".into(),
         "survey --terrain urban:1 --size 24 --metres-per-cell 0.5 --max-ticks 9 --out 5".into(),
-        "survey --terrain town:1 --size 24 --sensor camera --max-ticks 9 --out 6".into(),
+        "survey --terrain town:1 --size 24 --sensor camera --max-ticks 9 --wind 0.2 --clearance 0 --out 6".into(),
         "survey --scene 6/map.bt --max-ticks 3 --out 7 --start 2.5,2.5,2.5".into(),
         "survey --scene 6/map.ply --voxel-size 1 --max-ticks 3 --out 8".into(),
     ];

@@ -493,6 +493,20 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             ["--metres-per-cell", "--scene"],
         ),
         ("--sensor camera", ["--sensor camera", "among voxels"]),
+        ("--radius 0.1", ["--radius", "among voxels"]),
+        (
+            "--terrain town:1 --radius 0.1",
+            ["--radius", "--metres-per-cell"],
+        ),
+        (
+            "--scene rooms.bt --radius 0.3",
+            ["with voxels of 0.1 m at most 0.25 m", "0.12 m or more"],
+        ),
+        (
+            "--scene rooms.bt --radius 0.1 --clearance 1",
+            ["--radius", "--clearance"],
+        ),
+        ("--wind 0.2", ["--wind", "does not apply over a terrain"]),
         ("--fov 90x60", ["--fov", "among voxels"]),
         ("--scene rooms.bt --fov 90x60", ["--fov", "--sensor camera"]),
         (

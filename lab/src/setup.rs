@@ -283,7 +283,7 @@ fn cell(text: &str) -> Option<Cell> {
 mod tests {
     use super::*;
     use host_sim::scenario::{
-        AirFaults, ErrorKind, Faults, Limits, Mission, Preset, Reach, Trouble,
+        AirFaults, ErrorKind, Faults, Limits, Mission, Preset, Reach, Trouble, Wind,
     };
     use planner_core::Extent;
 
@@ -348,6 +348,7 @@ mod tests {
                     keep_out: vec!["1,2:3,4".parse().unwrap(), "5,5:7,5:5,7".parse().unwrap()],
                     only: vec!["0,0:9,9".parse().unwrap()],
                 },
+                wind: Wind { deviation: 0.5 },
             },
         }
     }

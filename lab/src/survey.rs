@@ -441,7 +441,7 @@ mod tests {
         let setup = filmed();
         let scene = setup.terrain.scene(setup.size).unwrap();
         let mut scenario = setup.voxel_scenario();
-        scenario.start = scene.start();
+        scenario.start = scene.start(scenario.clearance);
         let trace = voxels::run(&scene, &scenario).unwrap();
         let digest = trace.digest();
         let replay = SurveyScene::replay_voxels(trace);

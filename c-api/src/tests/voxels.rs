@@ -140,6 +140,7 @@ fn twin(field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
         range: BOX.range,
         field,
         link,
+        ..voxel_survey::Config::new()
     };
     let mut twin = Box::new(VoxelSurvey::vacant());
     let extent = Extent::new(BOX.width, BOX.depth);

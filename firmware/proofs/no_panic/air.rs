@@ -81,8 +81,10 @@ fn drive<const TW: usize, const TH: usize>(robot: &mut impl Surveyor<TW, TH>) {
 fn fly_among_voxels() {
     let config = black_box(voxel_survey::Config {
         range: 4,
-        clearance: black_box(2),
+        clearance: 2,
         field: Field::CAMERA,
+        come_home: true,
+        energy: 100,
         link: any::link(),
     });
     let levels = black_box(8);
@@ -102,6 +104,9 @@ fn fly_among_voxels() {
     let _ = black_box(robot.receive(any::bytes(&frame)));
     let patch: VoxelPatch = black_box(robot.volume().patch(tile(), black_box(1)));
     black_box(robot.merge(&patch));
+    black_box(robot.tick());
+    robot.energy(black_box(50));
+    robot.go_home();
     black_box(robot.tick());
     black_box((robot.status(), robot.work(), robot.position()));
     black_box(robot.volume().known_voxels());

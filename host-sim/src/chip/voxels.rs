@@ -135,6 +135,10 @@ impl Pilot for VoxelProxy {
         self.tell(None, &VoxelRequest::Resume);
     }
 
+    fn energy(&mut self, left: u32) {
+        self.tell(None, &VoxelRequest::Energy(left));
+    }
+
     fn status(&self) -> Status<Voxel> {
         self.state.status
     }

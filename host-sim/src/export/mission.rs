@@ -1,19 +1,23 @@
 //! Ways as MAVLink missions, in the two formats of ground stations: `.plan` of
 //! QGroundControl and the plain `.waypoints` of Mission Planner.
 //!
-//! A mission takes off at the first place and goes from turn to turn; it ends hovering at
-//! the last, as nobody knows where a landing is safe.
+//! A mission takes off at the first place and goes from turn to turn. Where that leads back to
+//! the first place it lands there; else it ends hovering, as nobody knows where a landing is
+//! safe.
 
 use std::io::{self, Write};
 use std::str::FromStr;
 
 use serde_json::{Value, json};
 
+use super::Way;
+
 /// Equatorial radius of the Earth in metres (WGS 84).
 const EARTH: f64 = 6_378_137.0;
 
-/// Commands of MAVLink: fly to, take off.
+/// Commands of MAVLink: fly to, land, take off.
 const WAYPOINT: u16 = 16;
+const LAND: u16 = 21;
 const TAKEOFF: u16 = 22;
 
 /// The frame of MAVLink whose altitudes count from home.
@@ -62,7 +66,7 @@ impl Home {
 }
 
 /// The mission of one robot as QGroundControl's `.plan`; `speed` in metres a second.
-pub fn plan(way: &[[f64; 3]], home: Home, speed: f64) -> Value {
+pub fn plan(way: &Way, home: Home, speed: f64) -> Value {
     let items = commands(way).map(|(number, command, point)| {
         let (latitude, longitude) = home.degrees(point);
         json!({
@@ -97,7 +101,7 @@ pub fn plan(way: &[[f64; 3]], home: Home, speed: f64) -> Value {
 ///
 /// # Errors
 /// Those of `to`.
-pub fn waypoints(way: &[[f64; 3]], home: Home, mut to: impl Write) -> io::Result<()> {
+pub fn waypoints(way: &Way, home: Home, mut to: impl Write) -> io::Result<()> {
     writeln!(to, "QGC WPL 110")?;
     let mut line = |number: usize, frame: u8, command: u16, (north, east): (f64, f64), up: f64| {
         let current = u8::from(number == 0);
@@ -114,11 +118,14 @@ pub fn waypoints(way: &[[f64; 3]], home: Home, mut to: impl Write) -> io::Result
 }
 
 /// Number, command and place of each item.
-fn commands(way: &[[f64; 3]]) -> impl Iterator<Item = (usize, u16, [f64; 3])> {
-    way.iter().enumerate().map(|(number, &point)| {
+fn commands(way: &Way) -> impl Iterator<Item = (usize, u16, [f64; 3])> {
+    let flown = way.places.iter().enumerate().map(|(number, &place)| {
         let command = if number == 0 { TAKEOFF } else { WAYPOINT };
-        (number, command, point)
-    })
+        (command, place)
+    });
+    let landing = way.landing().map(|place| (LAND, place));
+    let items = flown.chain(landing).enumerate();
+    items.map(|(number, (command, place))| (number, command, place))
 }
 
 #[cfg(test)]
@@ -143,7 +150,10 @@ mod tests {
 
     #[test]
     fn missions_take_off_and_fly_to_every_turn() {
-        let way = [[0.0, 0.0, 1.5], [1.0, 0.0, 1.5]];
+        let mut way = Way {
+            places: vec![[0.0, 0.0, 1.5], [1.0, 0.0, 1.5]],
+            ground: 0.5,
+        };
         let mut file = Vec::new();
         waypoints(&way, HOME, &mut file).unwrap();
         assert_eq!(
@@ -161,6 +171,16 @@ mod tests {
         );
         assert_eq!(items[1]["params"][6], 1.5);
         assert_eq!(plan["mission"]["hoverSpeed"], 2.0);
+        assert_eq!(items.len(), 2);
+        // Back home it lands.
+        way.places.push(way.places[0]);
+        let mut file = Vec::new();
+        waypoints(&way, HOME, &mut file).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        assert_eq!(
+            text.lines().last(),
+            Some("4\t0\t3\t21\t0\t0\t0\t0\t60.00000000\t-1.00000000\t0.500\t1")
+        );
     }
 
     #[test]

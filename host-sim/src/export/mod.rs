@@ -8,4 +8,4 @@ mod way;
 pub use mission::{Home, plan, waypoints};
 pub use ply::ply;
 pub use trajectory::{Segment, segments, trajectory};
-pub use way::{among_voxels, over_heights};
+pub use way::{Way, among_voxels, over_heights};

@@ -2,9 +2,13 @@
 //! segment, its duration and the eight coefficients of the polynomials of x, y, z and yaw,
 //! as the tools of `uav_trajectories` read and write them.
 //!
-//! Every leg begins and ends at rest, so that all turns are flown to, in a straight line.
+//! Every leg begins and ends at rest, so that all turns are flown to, in a straight line. The
+//! first one is the take-off, from the ground under the start; a way that leads back there ends
+//! with the landing.
 
 use std::io::{self, Write};
+
+use super::Way;
 
 /// The first line.
 const HEADER: &str = "duration,\
@@ -57,9 +61,13 @@ pub fn segments(way: &[[f64; 3]], speed: f64) -> Vec<Segment> {
 ///
 /// # Errors
 /// Those of `to`.
-pub fn trajectory(way: &[[f64; 3]], speed: f64, mut to: impl Write) -> io::Result<()> {
+pub fn trajectory(way: &Way, speed: f64, mut to: impl Write) -> io::Result<()> {
     writeln!(to, "{HEADER}")?;
-    for Segment { duration, axes } in segments(way, speed) {
+    let ground = way.places.first().map(|&[x, y, _]| [x, y, way.ground]);
+    let places = ground.iter().chain(&way.places).copied();
+    let mut places: Vec<_> = places.chain(way.landing()).collect();
+    places.dedup();
+    for Segment { duration, axes } in segments(&places, speed) {
         write!(to, "{duration}")?;
         for coefficient in axes.as_flattened() {
             write!(to, ",{coefficient}")?;
@@ -132,7 +140,11 @@ mod tests {
     #[test]
     fn a_line_has_a_duration_and_four_times_eight_numbers() {
         let mut file = Vec::new();
-        trajectory(&[[1.0, 2.0, 0.5], [1.0, 2.0, 16.5]], 35.0, &mut file).unwrap();
+        let mut way = Way {
+            places: vec![[1.0, 2.0, 0.5], [1.0, 2.0, 16.5]],
+            ground: 0.5,
+        };
+        trajectory(&way, 35.0, &mut file).unwrap();
         let text = String::from_utf8(file).unwrap();
         let lines: Vec<_> = text.lines().collect();
         assert_eq!(lines[0].split(',').count(), 33);
@@ -141,5 +153,12 @@ mod tests {
             "1,1,0,0,0,0,0,0,0,2,0,0,0,0,0,0,0,0.5,0,0,0,560,-1344,1120,-320,0,0,0,0,0,0,0,0"
         );
         assert_eq!(lines.len(), 2);
+        // From the ground, back home, and down again.
+        way.ground = -0.5;
+        way.places.push(way.places[0]);
+        let mut file = Vec::new();
+        trajectory(&way, 35.0, &mut file).unwrap();
+        let text = String::from_utf8(file).unwrap();
+        assert_eq!(text.lines().count(), 1 + 4);
     }
 }

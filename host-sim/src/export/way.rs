@@ -1,23 +1,61 @@
 //! Ways in metres: where robots started, turned and ended.
 
+use planner_core::Point;
+use planner_core::volume::Voxel;
+
 use crate::record::heights::Trace;
 use crate::record::voxels::VoxelTrace;
 
 /// Cosine of the largest angle between two flights in the same direction: rounding.
 const STRAIGHT: f64 = 1.0 - 1e-9;
 
+/// The way of one robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// Where it started, turned and ended.
+    pub places: Vec<[f64; 3]>,
+    /// Height of what is under its start.
+    pub ground: f64,
+}
+
+impl Way {
+    /// Where the robot lands: on the ground under its start, if the way leads back there.
+    pub fn landing(&self) -> Option<[f64; 3]> {
+        match self.places[..] {
+            [first, .., last] if first == last => Some([first[0], first[1], self.ground]),
+            _ => None,
+        }
+    }
+}
+
 /// The way of a robot among voxels; `None` if the scene has no metres.
-pub fn among_voxels(trace: &VoxelTrace, robot: usize) -> Option<Vec<[f64; 3]>> {
+pub fn among_voxels(trace: &VoxelTrace, robot: usize) -> Option<Way> {
     let frame = trace.scene.frame()?;
     let way = trace.ways[robot].iter();
-    Some(turns(way.map(|&voxel| frame.middle(voxel))))
+    let start = trace.ways[robot][0];
+    let below = (0..start.z).rev().map(|z| Voxel { z, ..start });
+    let floor = below.take_while(|at| !trace.scene.is_solid(*at)).last();
+    let [_, _, middle] = frame.middle(floor.unwrap_or(start));
+    Some(Way {
+        places: turns(way.map(|&voxel| frame.middle(voxel))),
+        ground: middle - frame.voxel_size / 2.0,
+    })
 }
 
 /// The way of a robot over heights; `None` if the terrain has no metres.
-pub fn over_heights(trace: &Trace, robot: usize) -> Option<Vec<[f64; 3]>> {
+pub fn over_heights(trace: &Trace, robot: usize) -> Option<Way> {
     let scale = trace.terrain.scale()?;
-    let way = trace.way(robot, u32::MAX).into_iter();
-    Some(turns(way.map(|at| scale.metres(at))))
+    let way = trace.way(robot, u32::MAX);
+    let start = *way.first()?;
+    let height = trace.terrain.height(start.cell())?;
+    let [_, _, ground] = scale.metres(Point {
+        z: height.cells(),
+        ..start
+    });
+    Some(Way {
+        places: turns(way.into_iter().map(|at| scale.metres(at))),
+        ground,
+    })
 }
 
 /// A way without the places where nothing turns.

@@ -36,8 +36,11 @@ pub struct VoxelTrace {
     pub all_stopped: bool,
     /// Why each robot had stopped at the end, if it had.
     pub stops: Vec<Option<Stop<Voxel>>>,
-    /// Flights into or beside something, or longer than a voxel.
+    /// Flights into or beside something, or longer than a voxel. A trace does not say where a
+    /// robot flew that the wind pushed: then none is counted when it is read.
     pub violations: u32,
+    /// Steps that the wind ended beside or in something.
+    pub contacts: u32,
 }
 
 impl VoxelTrace {

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use planner_core::radio::{Key, MAX_LEN, VoxelFrame};
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Heading, Voxel, VoxelPatch};
+use planner_core::volume::{Content, Heading, Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::Config;
 use planner_core::{Action, ExtentError, RobotId};
 
@@ -195,6 +195,8 @@ impl Simulation {
             range: scenario.range,
             clearance: scenario.clearance,
             field: scenario.field,
+            come_home: scenario.conditions.mission.come_home,
+            energy: scenario.conditions.mission.energy,
             link: scenario.conditions.link(),
         };
         let scene = Arc::new(scene.clone());
@@ -238,6 +240,7 @@ impl Simulation {
                 all_stopped: false,
                 stops: vec![None; scenario.robots],
                 violations: 0,
+                contacts: 0,
             },
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
@@ -310,6 +313,9 @@ impl Simulation {
             }
             if robot.alive && Faults::befalls(&faults.resumes, robot.id, self.now) {
                 robot.planner.resume();
+                if self.config.energy > 0 {
+                    robot.planner.energy(self.config.energy);
+                }
                 robot.stopped = false;
             }
         }
@@ -375,18 +381,52 @@ impl Simulation {
         }
     }
 
+    /// Whether a robot may fly from `at` to `to`. One that was pushed off all places for it may
+    /// fly over what is free.
+    fn is_allowed(&self, at: Voxel, to: Voxel) -> bool {
+        let is_pose = |at| self.scene.is_pose(at, self.config.clearance);
+        let was_pushed = !self.trace.scenario.conditions.wind.is_none() && !is_pose(at);
+        let has_room = is_pose(to) || was_pushed && !self.scene.is_solid(to);
+        has_room && at.distance_squared(to) <= 1
+    }
+
+    /// Where a robot comes to in the wind that flies to `to`: to the nearest voxel, on a straight
+    /// way that ends before what is solid.
+    fn blow(&mut self, robot: RobotId, to: Voxel) -> Voxel {
+        let conditions = &self.trace.scenario.conditions;
+        if conditions.wind.is_none() {
+            return to;
+        }
+        let off = conditions.wind.gust(conditions.seed, self.now, robot);
+        let off = off.map(|off| off.round() as i16);
+        let steps = off.iter().map(|off| off.abs()).max().unwrap_or(0);
+        let scene = &self.scene;
+        let is_open = |at| scene.content(at) == Some(Content::Free);
+        let mut at = to;
+        for step in 1..=steps {
+            let [x, y, z] = off.map(|off| (off * step).div_euclid(steps));
+            let next = Voxel::new(to.x + x, to.y + y, to.z + z);
+            if !is_open(next) || !in_sight(at, next, is_open) {
+                break;
+            }
+            at = next;
+        }
+        let is_clear = scene.is_pose(at, self.config.clearance.max(1));
+        self.trace.contacts += u32::from(!is_clear);
+        at
+    }
+
     /// Robot `i` decides, flies and tells the others where it is and goes.
     fn act(&mut self, i: usize) {
         let at = self.robots[i].at;
-        let (to, deed, stop) = match self.robots[i].planner.tick() {
+        let (mut to, deed, stop) = match self.robots[i].planner.tick() {
             Action::Move(_) if self.is_last() => (at, Deed::Hovered, None),
             Action::Move(to) => (to, Deed::Flew, None),
             Action::Wait => (at, Deed::Hovered, None),
             Action::Stop(stop) => (at, Deed::Stopped(stop.reason()), Some(stop)),
         };
         let work = self.robots[i].planner.work();
-        let is_allowed =
-            self.scene.is_pose(to, self.config.clearance) && at.distance_squared(to) <= 1;
+        let is_allowed = self.is_allowed(at, to);
         self.trace.violations += u32::from(!is_allowed);
         self.trace.stops[i] = stop;
         self.robots[i].stopped = stop.is_some();
@@ -399,6 +439,9 @@ impl Simulation {
                     self.robots[to].planner.hear(id, status);
                 }
             }
+        }
+        if stop.is_none() && !self.is_last() {
+            to = self.blow(self.robots[i].id, to);
         }
         let robot = &mut self.robots[i];
         robot.at = to;

@@ -119,6 +119,10 @@ pub struct ConditionsArgs {
     /// go) or rangers (errors depend on the place). Explorer only. Default: truthful.
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
+    /// In the air, flights and hovers end off where they should: along each axis by this many
+    /// cells, the standard deviation, 0 to 1. Robots know where they have come to. Default: 0.
+    #[arg(long, value_name = "S")]
+    wind: Option<f64>,
     #[command(flatten)]
     mission: MissionArgs,
     #[command(flatten)]
@@ -171,6 +175,7 @@ impl ConditionsArgs {
             preset,
             mission,
             limits,
+            wind,
         } = conditions;
         let AirFaults {
             reach,
@@ -216,6 +221,7 @@ impl ConditionsArgs {
         *trouble = self.trouble.over(*trouble);
         replace(preset, self.preset);
         *mission = self.mission.over(*mission);
+        replace(&mut wind.deviation, self.wind);
         self.limits.over(limits)?;
         match (medium, self.link.byte_budget) {
             (MediumKind::Ideal, Some(_)) => Err(ScenarioError::NoFrames("byte-budget")),
@@ -263,6 +269,7 @@ impl Conditions {
             preset,
             mission,
             limits,
+            wind,
         } = self;
         let AirFaults {
             reach,
@@ -322,6 +329,7 @@ impl Conditions {
         settings.extend(all("pose-lost", lost_poses));
         settings.extend(mission.settings());
         settings.extend(limits.settings());
+        settings.extend(wind.settings());
         settings.extend(trouble.settings(&usual.trouble));
         settings
     }

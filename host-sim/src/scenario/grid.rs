@@ -75,6 +75,12 @@ impl Scenario {
     /// What is out of range.
     pub fn check(&self) -> Result<(), ScenarioError> {
         self.conditions.check(self.starts.len())?;
+        if !self.conditions.wind.is_none() {
+            return Err(ScenarioError::NotHere {
+                option: "wind",
+                world: "on the ground",
+            });
+        }
         if !(1..=sight::MAX_LONG_RADIUS).contains(&self.range) {
             let expected = format!("1 to {} cells", sight::MAX_LONG_RADIUS);
             return Err(ScenarioError::setting("range", self.range, expected));

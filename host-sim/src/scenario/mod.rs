@@ -11,6 +11,7 @@ mod key;
 mod motion;
 mod trouble;
 pub mod voxels;
+mod wind;
 
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use serde::{Deserialize, Serialize};
@@ -24,6 +25,7 @@ pub use error::ScenarioError;
 pub use faults::{CellSpan, Event, FaultText, Faults, RobotSpan};
 pub use motion::{Drive, Motion, MotionArgs};
 pub use trouble::{ErrorKind, Preset, Trouble, TroubleArgs};
+pub use wind::Wind;
 
 /// Ten frames of 55 bytes: with 30 % of them lost, eight robots take hardly longer.
 const FLOWN_BYTE_BUDGET: u16 = 550;
@@ -68,6 +70,9 @@ pub struct Conditions {
     /// What robots keep out of.
     #[serde(default, skip_serializing_if = "Limits::is_none")]
     pub limits: Limits,
+    /// What pushes robots in the air.
+    #[serde(default, skip_serializing_if = "Wind::is_none")]
+    pub wind: Wind,
 }
 
 fn is_usual(preset: &Preset) -> bool {
@@ -96,6 +101,7 @@ impl Conditions {
             preset: Preset::default(),
             mission: Mission::default(),
             limits: Limits::default(),
+            wind: Wind::default(),
         }
     }
 
@@ -144,6 +150,7 @@ impl Conditions {
         check_share("duplicate", self.air.duplication)?;
         check_share("corrupt", self.air.corruption)?;
         self.trouble.check()?;
+        self.wind.check()?;
         if let Some(option) = self.of_frames().next()
             && self.medium != MediumKind::Radio
         {
@@ -174,27 +181,25 @@ impl Conditions {
         used.map(|(option, _)| option)
     }
 
-    /// Nothing that is of cells or poses of a grid, which `world` does not have; missions and
-    /// faults of columns, senses and poses only over heights.
-    fn check_flown(&self, world: &'static str, is_of_heights: bool) -> Result<(), ScenarioError> {
+    /// Nothing that is of cells or poses of a grid but those options that `world` `has`, too.
+    fn check_flown(&self, world: &'static str, has: &[&str]) -> Result<(), ScenarioError> {
         let faults = &self.faults;
-        let has = |spans: usize| spans > 0 && !is_of_heights;
         let of_grids = [
-            ("close", has(faults.closures.len())),
+            ("close", !faults.closures.is_empty()),
             ("shut", !faults.shut.is_empty()),
             ("preset", !is_usual(&self.preset)),
-            ("blind", has(faults.blind.len())),
-            ("sensor-fails", has(faults.sensor_failures.len())),
-            ("pose-lost", has(faults.lost_poses.len())),
+            ("blind", !faults.blind.is_empty()),
+            ("sensor-fails", !faults.sensor_failures.is_empty()),
+            ("pose-lost", !faults.lost_poses.is_empty()),
         ];
         let used = of_grids.into_iter().filter(|(_, is_used)| *is_used);
         let mut settings = self.trouble.settings(&Trouble::default());
-        if !is_of_heights {
-            settings.extend(self.mission.settings());
-        }
+        settings.extend(self.mission.settings());
+        settings.extend(self.wind.settings());
         settings.extend(self.limits.settings());
         let named = settings.iter().map(|(option, _)| *option);
-        match used.map(|(option, _)| option).chain(named).next() {
+        let mut all = used.map(|(option, _)| option).chain(named);
+        match all.find(|option| !has.contains(option)) {
             Some(option) => Err(ScenarioError::NotHere { option, world }),
             None => Ok(()),
         }

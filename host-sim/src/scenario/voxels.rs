@@ -104,7 +104,8 @@ impl Scenario {
     /// The first setting that is out of its range, and the range.
     pub fn check(&self, scene: &Scene) -> Result<(), ScenarioError> {
         self.conditions.check(self.robots)?;
-        self.conditions.check_flown("in a town of voxels", false)?;
+        self.conditions
+            .check_flown("in a town of voxels", &["come-home", "energy", "wind"])?;
         if !(2..=MAX_RANGE).contains(&self.range) {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));
@@ -124,6 +125,15 @@ impl Scenario {
                 self.clearance
             );
             return Err(ScenarioError::setting("range", self.range, expected));
+        }
+        let mission = self.conditions.mission.settings().into_iter().next();
+        if let Some((option, _)) = mission
+            && self.planner != Planner::VoxelSurvey
+        {
+            return Err(ScenarioError::NotHere {
+                option,
+                world: "to what voxel-survey is compared with, which knows no way home",
+            });
         }
         if self.planner != Planner::VoxelSurvey && !self.field.is_whole() {
             return Err(ScenarioError::NotHere {

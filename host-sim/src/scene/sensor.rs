@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use planner_core::volume::{Field, Heading, Voxel};
+use planner_core::volume::{Field, Heading, MAX_CLEARANCE, Voxel};
 
 /// What kind of sensor robots carry. Whatever it is, they feel what is within two voxels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -101,10 +101,14 @@ impl Sensor {
         }
     }
 
-    /// The sensor with this field, however far it feels, and a camera's image; `None`: none of
+    /// The sensor with this field, as far as bodies need to feel, and a camera's image; `None`: none of
     /// these has it.
     pub fn of(field: Field) -> Option<(Self, Fov)> {
-        let near = Field::ALL_ROUND.near;
+        let usual = Field::ALL_ROUND.near;
+        let near = match (usual..=MAX_CLEARANCE + 1).contains(&field.near) {
+            true => usual,
+            false => field.near,
+        };
         let field = Field { near, ..field };
         let degrees = |half: u16| (f64::from(half) / 256.0).atan().to_degrees() * 2.0;
         let fov = field.side.and_then(|side| {
@@ -212,6 +216,11 @@ mod tests {
             let fov = Fov::default();
             assert_eq!(Sensor::of(sensor.field(fov)), Some((sensor, fov)));
         }
+        let wide = Field {
+            near: MAX_CLEARANCE + 1,
+            ..Field::CAMERA
+        };
+        assert_eq!(Sensor::name_of(wide), "camera 90x60");
         let blind = Field {
             near: 9,
             ..Field::LIDAR

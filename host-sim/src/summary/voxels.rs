@@ -23,6 +23,8 @@ pub struct Summary {
     pub mean_work_per_tick: f64,
     /// Flights that should not have been; anything but 0 is a bug of the planner.
     pub violations: u32,
+    /// Steps that the wind ended beside or in something.
+    pub contacts: u32,
     /// How the robots decided.
     pub planner: Planner,
     /// Sensor range in voxels.
@@ -96,6 +98,7 @@ impl Summary {
             ticks_to_99: trace.ticks_to(0.99),
             mean_work_per_tick: work().map(f64::from).sum::<f64>() / work().len().max(1) as f64,
             violations: trace.violations,
+            contacts: trace.contacts,
             planner: scenario.planner,
             range: scenario.range,
             clearance: scenario.clearance,

@@ -141,7 +141,7 @@ impl SurveySetup {
     /// As [`gives`](Self::gives), among voxels.
     pub fn gives_voxels(&self, trace: &VoxelTrace) -> bool {
         let said = trace.scenario.start;
-        let usual = said.filter(|_| said == trace.scene.start());
+        let usual = said.filter(|_| said == trace.scene.start(trace.scenario.clearance));
         let scenario = voxels::Scenario {
             start: usual,
             ..self.voxel_scenario()

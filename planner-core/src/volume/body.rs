@@ -12,8 +12,8 @@ use crate::tile::{TileIndex, across, along, carried, shifted};
 pub const MAX_CLEARANCE: u8 = 3;
 
 /// Work that a body takes more than one of clearance 1: for a word, and for a voxel.
-const WORD_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 20, 40];
-const VOXEL_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 6, 14];
+const WORD_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 32, 64];
+const VOXEL_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 14, 32];
 
 /// How far the ball reaches along a row that is so far away along the other axes; `None` where
 /// it has none.

@@ -1,11 +1,13 @@
-//! The nearest pose far away that is not done: a wave over all poses, in slices.
+//! The nearest pose far away that is not done: a wave over all poses, in slices. And one from
+//! home, over which the robot flies back.
 
 use super::{SLICE, VoxelSurvey, WAY};
 use crate::tile::TileIndex;
-use crate::volume::{Layer, Volume, Voxel, beside, word_work};
+use crate::volume::{Layer, Voxel, beside, word_work};
 
 /// Work of a word that the wave may enter, and of a step back.
 const WORD: u32 = 7;
+pub(super) const HOME_WORD: u32 = WORD;
 const BACK: u32 = 16;
 
 /// The northernmost and the southernmost row of a tile.
@@ -23,6 +25,17 @@ pub(super) enum Found {
     Nothing,
 }
 
+/// The same of the search for the way home.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Homeward {
+    /// So many steps lead there.
+    Found(u32),
+    /// Nothing yet.
+    Searching,
+    /// No way leads there.
+    Nothing,
+}
+
 /// Where the search stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Stage {
@@ -33,17 +46,24 @@ enum Stage {
     },
     /// The way is followed back from the goal, and is here.
     Back(Voxel),
+    /// A wave from home spreads; the number of known voxels when it began.
+    FromHome {
+        known: u32,
+    },
+    /// It has reached the robot: distances lead home.
+    Homeward,
 }
 
-/// A wave from the robot over all poses. A pose's distance is kept modulo 3, plus one, in
+/// A wave from the robot, or from home, over all poses. A pose's distance is kept modulo 3, plus one, in
 /// two bits; 0 is not reached.
 #[derive(Clone, Debug)]
 pub(super) struct Far<const TW: usize, const TH: usize, const L: usize> {
     stage: Stage,
     low: Layer<TW, TH, L>,
     high: Layer<TW, TH, L>,
-    /// The distance modulo 3 of what is reached next.
+    /// The distance of what is reached next: modulo 3, and all of it.
     layer: u8,
+    steps: u32,
     /// Rows of tiles of each level that the wave may enter now, and those behind them. Only
     /// beside what it reached last.
     rows: [u64; L],
@@ -64,6 +84,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             low: Layer::EMPTY,
             high: Layer::EMPTY,
             layer: 0,
+            steps: 0,
             rows: [0; L],
             next_rows: [0; L],
             cursor: (TileIndex { x: 0, y: 0 }, 0),
@@ -82,6 +103,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.low.reset();
         self.high.reset();
         self.layer = 1;
+        self.steps = 1;
         self.rows.fill(0);
         self.next_rows.fill(0);
         self.cursor = (TileIndex { x: 0, y: 0 }, 0);
@@ -89,9 +111,9 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.spare = None;
     }
 
-    fn begin(&mut self, from: Voxel, known: u32) {
+    fn begin(&mut self, from: Voxel, stage: Stage) {
         self.reset();
-        self.stage = Stage::Wave { known };
+        self.stage = stage;
         if let Some((tile, z, bit)) = from.place() {
             self.low.add(tile, z, bit);
             self.enter(tile, z, bit);
@@ -149,6 +171,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         self.rows = self.next_rows;
         self.next_rows.fill(0);
         self.layer = (self.layer + 1) % 3;
+        self.steps = self.steps.saturating_add(1);
         self.find_row(0, 0)
     }
 
@@ -169,25 +192,37 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
         (self.low.word(tile, z) ^ low) & (self.high.word(tile, z) ^ high)
     }
 
-    /// Lets the wave of a body into the word at the cursor, but not into `closed` voxels; gives
-    /// the work.
-    fn spread_into_tile(
-        &mut self,
-        volume: &Volume<TW, TH, L>,
-        clearance: u8,
-        closed: &Layer<TW, TH, L>,
-    ) -> u32 {
+    /// The neighbours of `at` that are a step nearer to home, once the wave from there has come.
+    pub(super) fn steps_home(&self, at: Voxel) -> impl Iterator<Item = Voxel> {
+        let distance = match self.stage {
+            Stage::Homeward => self.distance(at),
+            _ => None,
+        };
+        let before = distance.map(|distance| (distance + 2) % 3);
+        let beside = at.beside().into_iter();
+        beside.filter(move |&at| before.is_some() && self.distance(at) == before)
+    }
+
+    /// The robot is somewhere else than where the search has taken it to be.
+    pub(super) fn lose_robot(&mut self) {
+        if matches!(self.stage, Stage::FromHome { .. }) {
+            self.reset();
+        }
+    }
+
+    /// Lets the wave into those of the word at the cursor that `enterable` gives; says whether
+    /// it was asked.
+    fn spread_into_tile(&mut self, enterable: impl FnOnce(TileIndex, u8) -> u64) -> bool {
         let (tile, z) = self.cursor;
         let reached = self.low.word(tile, z) | self.high.word(tile, z);
         let before = (self.layer + 2) % 3;
         let next = beside(tile, z, |tile, z| self.at(before, tile, z)) & !reached;
         if next == 0 {
-            return WORD;
+            return false;
         }
-        let work = WORD + word_work(clearance);
-        let new = next & volume.poses(tile, z, clearance) & !closed.word(tile, z);
+        let new = next & enterable(tile, z);
         if new == 0 {
-            return work;
+            return true;
         }
         if self.layer != 1 {
             self.low.add(tile, z, new);
@@ -196,7 +231,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
             self.high.add(tile, z, new);
         }
         self.enter(tile, z, new);
-        work
+        true
     }
 }
 
@@ -204,8 +239,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// One step of the search. The robot stays where it is meanwhile.
     pub(super) fn look_far(&mut self) -> Found {
         match self.far.stage {
-            Stage::Idle => {
-                self.far.begin(self.position, self.volume.known_voxels());
+            Stage::Idle | Stage::FromHome { .. } | Stage::Homeward => {
+                let known = self.volume.known_voxels();
+                self.far.begin(self.position, Stage::Wave { known });
                 Found::Searching
             }
             Stage::Wave { known } => self.spread(known),
@@ -213,13 +249,60 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
     }
 
+    /// Lets the wave into a word, and into the voxel of `guest` whatever it is.
+    fn spread_into_word(&mut self, guest: Option<Voxel>) {
+        let guest = guest.and_then(Voxel::place);
+        let is_asked = self.far.spread_into_tile(|tile, z| {
+            let poses = self.volume.poses(tile, z, self.clearance) & !self.closed.word(tile, z);
+            match guest {
+                Some((its_tile, its_z, bit)) if (its_tile, its_z) == (tile, z) => poses | bit,
+                _ => poses,
+            }
+        });
+        let body = if is_asked {
+            word_work(self.clearance)
+        } else {
+            0
+        };
+        self.work = self.work.saturating_add(WORD + body);
+    }
+
+    /// One step of the search for the way home. The robot stays where it is meanwhile.
+    ///
+    /// The wave begins at home: once it has come to the robot, distances lead back.
+    pub(super) fn look_for_home(&mut self, home: Voxel) -> Homeward {
+        let now = self.volume.known_voxels();
+        let known = match self.far.stage {
+            Stage::FromHome { known } => known,
+            _ => {
+                self.far.begin(home, Stage::FromHome { known: now });
+                now
+            }
+        };
+        let (columns, _) = self.volume.extent().tiles();
+        while self.work < SLICE {
+            self.spread_into_word(Some(self.position));
+            if self.far.distance(self.position).is_some() {
+                self.far.stage = Stage::Homeward;
+                return Homeward::Found(self.far.steps);
+            }
+            if !self.far.advance(columns) {
+                self.far.stage = Stage::Idle;
+                // What was learnt meanwhile may have opened a way.
+                return if known == now {
+                    Homeward::Nothing
+                } else {
+                    Homeward::Searching
+                };
+            }
+        }
+        Homeward::Searching
+    }
+
     fn spread(&mut self, known: u32) -> Found {
         let (columns, _) = self.volume.extent().tiles();
         while self.work < SLICE {
-            let work = self
-                .far
-                .spread_into_tile(&self.volume, self.clearance, &self.closed);
-            self.work = self.work.saturating_add(work);
+            self.spread_into_word(None);
             let (tile, z) = self.far.cursor;
             let reached = self.far.at(self.far.layer, tile, z);
             let open = reached & !self.done.word(tile, z) & !self.far.passed;

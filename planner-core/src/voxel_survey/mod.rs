@@ -59,8 +59,17 @@
 //!
 //! Steps without a good pose are outside of all counts: nothing is decided in them.
 //!
+//! # Wind
+//! A robot that is neither where it was nor where it was sent was *pushed*: nothing is closed, and
+//! the way is dropped. Where that leaves it off all poses it flies back to one over free voxels.
+//! Pushes without progress are counted; after `PUSHES` of them it stops, as blocked where it is.
+//! The claim is then of the poses that can be reached from where it stops: a push may take it to
+//! others than those before, which it surveys too.
+//!
 //! Robots do not stand in each other's way: several may share a voxel. What others tell only saves
 //! looks; nothing waits for it.
+//!
+//! Energy, and the way home, are in `mission`.
 //!
 //! One step of a robot is [`observe`](VoxelSurvey::observe); then
 //! [`transmit`](VoxelSurvey::transmit) and [`receive`](VoxelSurvey::receive); then
@@ -70,10 +79,12 @@
 
 mod far;
 mod gain;
+mod mission;
 mod near;
 mod news;
 mod rounds;
 mod turn;
+mod wind;
 
 use core::borrow::Borrow;
 
@@ -88,6 +99,7 @@ use crate::tile::TileIndex;
 use crate::volume::{Field, Heading, Layer, MAX_CLEARANCE, MAX_REACH, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
 use far::Far;
+use mission::Mission;
 use news::News;
 use turn::Turn;
 
@@ -124,6 +136,11 @@ pub struct Config {
     pub clearance: u8,
     /// What of that the sensors show.
     pub field: Field,
+    /// Whether a robot that has surveyed all flies home, to where it started, before it stops.
+    pub come_home: bool,
+    /// Ticks in the air that the robot's energy lasts for, as by
+    /// [`energy`](VoxelSurvey::energy) at the start; 0: no limit.
+    pub energy: u32,
     /// How the robots use the radio. Its origin is that of the lowest level.
     pub link: LinkConfig,
 }
@@ -135,6 +152,8 @@ impl Config {
             range: 8,
             clearance: 1,
             field: Field::ALL_ROUND,
+            come_home: false,
+            energy: 0,
             link: LinkConfig::new(),
         }
     }
@@ -183,6 +202,9 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     rest: u8,
     /// Where the last tick sent the robot.
     sent_to: Option<Voxel>,
+    /// Pushes since the last progress, and whether one has left the robot where no pose is.
+    pushes: u16,
+    is_adrift: bool,
     /// Whether the last pose was one that nothing can be decided from.
     lost: bool,
     /// Looks in a row that showed nothing, and whether there was one since the last tick.
@@ -195,6 +217,7 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     /// Why, and the number of known voxels then.
     reason: (Stop<Voxel>, u32),
     waiting: Maybe<Wait>,
+    mission: Mission,
     work: u32,
 }
 
@@ -227,6 +250,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             round_known: 0,
             rest: 0,
             sent_to: None,
+            pushes: 0,
+            is_adrift: false,
             lost: false,
             silent: 0,
             looked: false,
@@ -235,6 +260,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             stopped: false,
             reason: (Stop::Complete, 0),
             waiting: Maybe::Nothing,
+            mission: Mission::vacant(),
             work: 0,
         }
     }
@@ -285,10 +311,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.refused = Voxel::new(0, 0, 0);
         self.round_known = 0;
         self.sent_to = None;
+        self.is_adrift = false;
         self.lost = false;
         self.looked = false;
         self.last_known = 0;
         self.waiting = Maybe::Nothing;
+        self.mission = Mission::of(&config);
         self.work = 0;
         self.resume();
         log!(
@@ -329,7 +357,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// [`in_sight`](crate::volume::in_sight) over free voxels: at least the robot's own,
     /// so a look that shows nothing is one of a sensor that failed.
     ///
-    /// A robot that is not where the last [`Action::Move`] sent it was kept from there.
+    /// A robot that is where it was, and not where the last [`Action::Move`] sent it, was kept
+    /// from there; one that is elsewhere was pushed.
     /// From a place off the box or inside something known nothing is learnt and nothing
     /// decided: the robot hovers, and [`waiting`](Self::waiting) is [`Wait::Pose`], until
     /// a pose is good again.
@@ -354,11 +383,19 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             return;
         }
         self.volume.stand(at);
+        let is_at_rest = at == self.position;
         if let Some(to) = sent_to.filter(|&to| to != at) {
-            self.closed.set(to);
-            self.is_closed = true;
-            self.refused = to;
+            if is_at_rest {
+                self.closed.set(to);
+                self.is_closed = true;
+                self.refused = to;
+            }
             self.way.clear();
+        }
+        if !is_at_rest && sent_to != Some(at) && self.mission.has_home() {
+            self.pushes = self.pushes.saturating_add(1);
+            self.is_adrift = true;
+            self.far.lose_robot();
         }
         self.arrive(at);
         self.closed.clear(at);
@@ -389,6 +426,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Goes on after a stop with the map at hand: what was given up is tried again.
     /// Without a stop it does only the latter.
     pub fn resume(&mut self) {
+        if self.stopped {
+            self.mission.end_errand();
+        }
         self.stopped = false;
         self.silent = 0;
         self.turn_to = Turn::NONE;
@@ -399,6 +439,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.round = 0;
         self.rest = 0;
         self.fruitless = 0;
+        self.pushes = 0;
         self.way.clear();
         self.far.reset();
     }
@@ -415,8 +456,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub fn status(&self) -> Status<Voxel> {
         Status {
             position: self.position,
-            goal: (!self.way.is_empty()).then_some(self.goal),
-            activity: Activity::stopped_if(self.stopped),
+            goal: match self.mission.goal() {
+                _ if self.stopped => None,
+                None => (!self.way.is_empty()).then_some(self.goal),
+                home => home,
+            },
+            activity: Activity::stopped_if(self.stopped || self.mission.has_errand()),
         }
     }
 
@@ -516,6 +561,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             Action::Wait | Action::Stop(_) => None,
         };
         if !matches!(action, Action::Stop(_)) {
+            self.mission.spend();
             self.turn(self.sent_to.unwrap_or(self.position));
         }
         action
@@ -530,6 +576,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.sender.tick();
         self.stopped = false;
         self.way.clear();
+        self.mission.spend();
     }
 
     fn decide(&mut self) -> Action<Voxel, Voxel> {
@@ -545,8 +592,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             return Action::Stop(reason);
         }
         self.stopped = false;
+        if let Some(action) = self.mind_wind() {
+            return action;
+        }
+        if let Some(action) = self.mind_mission() {
+            return action;
+        }
         if self.silent >= SILENCE {
-            return self.stop(match self.unknown_place() {
+            return self.end(match self.unknown_place() {
                 Some(at) => self.unseen(at),
                 None => Stop::Complete,
             });

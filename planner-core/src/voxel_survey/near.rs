@@ -8,7 +8,7 @@ use crate::robot::Action;
 use crate::volume::{Voxel, voxel_work};
 
 /// Poses around the robot that are considered.
-const POSES: usize = 512;
+pub(super) const POSES: usize = 512;
 
 /// Those of them whose view is looked at in one step.
 const VIEWS: usize = 40;
@@ -43,11 +43,11 @@ const START: u32 = 2;
 
 /// A pose that can be reached, and the number of the one before it.
 #[derive(Clone, Copy)]
-struct Place {
+pub(super) struct Place {
     /// Where it is, seen from the robot.
     offset: [i8; 3],
-    before: u16,
-    steps: u16,
+    pub(super) before: u16,
+    pub(super) steps: u16,
 }
 
 impl Place {
@@ -57,7 +57,7 @@ impl Place {
         steps: 0,
     };
 
-    fn at(self, here: Voxel) -> Voxel {
+    pub(super) fn at(self, here: Voxel) -> Voxel {
         let [x, y, z] = self.offset.map(i16::from);
         Voxel::new(
             here.x.saturating_add(x),
@@ -83,7 +83,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub(super) fn look_near(&mut self) -> Option<Action<Voxel, Voxel>> {
         let here = self.position;
         let mut places = Vec::new();
-        self.find_places(&mut places);
+        self.find_places(&mut places, self.clearance);
         let best = loop {
             self.work = self.work.saturating_add(places.len() as u32);
             let is_open = |place: &&Place| !self.done.get(place.at(here));
@@ -150,10 +150,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         best.map(|(_, number)| number)
     }
 
-    /// The poses around the robot, nearest first, the robot's own in front.
+    /// The poses of a body of this clearance around the robot, nearest first, the robot's own
+    /// place in front.
     // Not in line: its window would stay on the stack beside the views.
     #[inline(never)]
-    fn find_places(&mut self, places: &mut Vec<Place, POSES>) {
+    pub(super) fn find_places(&mut self, places: &mut Vec<Place, POSES>, clearance: u8) {
         // One bit for each voxel of the window that was looked at.
         let mut seen = [[0u32; 2 * WINDOW as usize]; 2 * WINDOW as usize];
         let here = self.position;
@@ -177,7 +178,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         };
         visit(here);
         let _ = places.push(Place::OWN);
-        let pose = POSE + voxel_work(self.clearance);
+        let pose = POSE + voxel_work(clearance);
         let most = self.work.saturating_add(MOST_POSES);
         for number in 0..POSES {
             let Some(&place) = places.get(number) else {
@@ -191,7 +192,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                     continue;
                 }
                 self.work = self.work.saturating_add(pose);
-                if self.volume.is_pose(at, self.clearance) && !self.closed.get(at) {
+                if self.volume.is_pose(at, clearance) && !self.closed.get(at) {
                     let _ = places.push(place.next(number as u16, at, here));
                 }
             }

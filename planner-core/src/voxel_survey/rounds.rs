@@ -45,7 +45,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 self.round = 0;
             }
             if self.round >= ROUNDS {
-                return self.stop(Stop::Blocked {
+                return self.end(Stop::Blocked {
                     frontiers: self.volume.frontiers(),
                     at: self.refused,
                 });
@@ -61,7 +61,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             None
         };
         let frontiers = self.volume.frontiers();
-        self.stop(match missed {
+        self.end(match missed {
             Some(at) => self.unseen(at),
             None if frontiers == 0 => Stop::Complete,
             None if self.sender.hearsay.cells > 0 => Stop::Enclosed { frontiers },

@@ -7,6 +7,8 @@ use super::*;
 use crate::volume::{Content, body_voxels, in_sight};
 
 mod fields;
+mod mission;
+mod wind;
 
 const EXTENT: Extent = Extent::new(11, 10);
 const LEVELS: u8 = 7;

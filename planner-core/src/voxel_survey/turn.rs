@@ -60,6 +60,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 ..Turn::NONE
             };
         }
+        let is_from_pose = at == self.position
+            || self.mission.is_home(self.position)
+            || self.volume.is_pose(self.position, self.clearance);
+        self.mission
+            .arrive(is_from_pose.then_some(self.position), at);
         self.position = at;
     }
 

@@ -96,6 +96,7 @@ fn obey(
         }
         VoxelRequest::Pass => done(stopwatch.measure(|| robot.pass())),
         VoxelRequest::Resume => done(stopwatch.measure(|| robot.resume())),
+        VoxelRequest::Energy(left) => done(stopwatch.measure(|| robot.energy(left))),
         VoxelRequest::Transmit => {
             let mut buffer = [0; MAX_LEN];
             let (length, cost) = stopwatch.measure(|| robot.transmit(&mut buffer));

@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use clap::Args;
-use host_sim::export::{self, Home};
+use host_sim::export::{self, Home, Way};
 
 use crate::command::folder::Folder;
 
@@ -54,7 +54,7 @@ impl WayArgs {
     pub(super) fn write(
         &self,
         folder: &mut Folder,
-        ways: impl Iterator<Item = Vec<[f64; 3]>>,
+        ways: impl Iterator<Item = Way>,
     ) -> Result<(), Box<dyn Error>> {
         for (way, robot) in ways.zip(0..) {
             if let Some(home) = self.home {

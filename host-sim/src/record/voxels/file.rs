@@ -156,6 +156,7 @@ impl VoxelTrace {
             all_stopped: header.all_stopped,
             stops: header.stops,
             violations: 0,
+            contacts: 0,
             scenario,
             scene,
         };
@@ -232,7 +233,14 @@ impl VoxelTrace {
         let is_allowed = |leg: &&[Voxel]| {
             scene.is_pose(leg[1], clearance) && leg[0].distance_squared(leg[1]) <= 1
         };
-        self.violations = legs.filter(|leg| !is_allowed(leg)).count() as u32;
+        let (violations, contacts) = match self.scenario.conditions.wind.is_none() {
+            true => (legs.filter(|leg| !is_allowed(leg)).count(), 0),
+            false => {
+                let touches = |leg: &&[Voxel]| !scene.is_pose(leg[1], clearance.max(1));
+                (0, legs.filter(touches).count())
+            }
+        };
+        (self.violations, self.contacts) = (violations as u32, contacts as u32);
         self.visible = visible.count();
     }
 

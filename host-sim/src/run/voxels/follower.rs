@@ -105,6 +105,10 @@ impl Pilot for Follower {
         self.inner.resume();
     }
 
+    fn energy(&mut self, left: u32) {
+        self.inner.energy(left);
+    }
+
     fn status(&self) -> Status<Voxel> {
         self.inner.status()
     }

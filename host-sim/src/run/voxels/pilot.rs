@@ -60,6 +60,8 @@ pub trait Pilot {
     fn tick(&mut self) -> Action<Voxel, Voxel>;
     fn work(&self) -> u32;
     fn resume(&mut self);
+    /// Tells for how many steps the energy lasts from now on.
+    fn energy(&mut self, left: u32);
     fn status(&self) -> Status<Voxel>;
     fn hear(&mut self, id: RobotId, status: Status<Voxel>);
     fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize>;
@@ -96,6 +98,10 @@ impl<const TW: usize, const TH: usize, const L: usize> Pilot for VoxelSurvey<TW,
 
     fn resume(&mut self) {
         self.resume();
+    }
+
+    fn energy(&mut self, left: u32) {
+        self.energy(left);
     }
 
     fn status(&self) -> Status<Voxel> {

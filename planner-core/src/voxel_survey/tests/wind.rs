@@ -1,0 +1,109 @@
+//! Robots that are pushed.
+
+use super::*;
+use crate::rng::Rng;
+
+/// Where a push leads from `at`: a voxel to any side, and not into a wall.
+fn pushed(walls: &BTreeSet<Voxel>, at: Voxel, dice: &mut Rng) -> Voxel {
+    let mut step = || (dice.next_u32() >> 16) as i16 % 3 - 1;
+    let to = Voxel::new(at.x + step(), at.y + step(), at.z + step());
+    let is_open = |at: Voxel| is_inside(at) && !walls.contains(&at);
+    match is_open(to) && in_sight(at, to, is_open) {
+        true => to,
+        false => at,
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// In wind, in up to two steps of five: the survey ends, and what can be seen from all that
+    /// can be reached from where it ends is seen. A robot that comes home does so, if a way leads
+    /// there.
+    #[test]
+    fn all_that_can_be_seen_is_seen_in_wind(
+        (scattered, slabs) in walls(),
+        clearance in 0u8..=2,
+        come_home in any::<bool>(),
+        gusts in 1u32..40,
+        seed in any::<u64>(),
+    ) {
+        let mut walls = scene(&scattered, &slabs);
+        for voxel in body_voxels(clearance, START) {
+            walls.remove(&voxel);
+        }
+        let config = Config { clearance, come_home, ..CONFIG };
+        let mut robot = Robot::new(config, RobotId(0), EXTENT, LEVELS).unwrap();
+        let mut dice = Rng::new(seed, 0);
+        let mut at = START;
+        for steps in 0.. {
+            prop_assert!(steps < 20_000);
+            robot.observe(at, &look(&walls, at));
+            match robot.tick() {
+                Action::Move(to) => {
+                    prop_assert_eq!(at.distance_squared(to), 1);
+                    prop_assert!(!walls.contains(&to));
+                    at = to;
+                }
+                Action::Wait => {}
+                Action::Stop(stop) => {
+                    let is_cut_off = !reached(&walls, at, clearance).contains(&START);
+                    match stop {
+                        Stop::NoWay { .. } => prop_assert!(come_home && is_cut_off, "{stop}"),
+                        _ => {
+                            prop_assert!(stop.is_complete(), "{stop} at {at}");
+                            prop_assert!(!come_home || at == START);
+                        }
+                    }
+                    break;
+                }
+            }
+            if dice.next_u32() % 100 < gusts {
+                at = pushed(&walls, at, &mut dice);
+            }
+        }
+        for voxel in visible(&walls, at, clearance) {
+            prop_assert!(robot.volume().content(voxel) != Content::Unknown, "{voxel}");
+        }
+    }
+
+    /// In a storm that takes it anywhere in every step, the robot gives up in the end.
+    #[test]
+    fn a_storm_ends_a_survey(seed in any::<u64>()) {
+        let walls: BTreeSet<Voxel> = all().filter(|voxel| voxel.z == 0 || voxel.x == 7).collect();
+        // What is behind the wall makes a frontier that is never reached.
+        let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+        let mut dice = Rng::new(seed, 0);
+        let mut at = START;
+        for steps in 0.. {
+            prop_assert!(steps < 60_000);
+            robot.observe(at, &look(&walls, at));
+            if let Action::Stop(_) = robot.tick() {
+                break;
+            }
+            at = pushed(&walls, at, &mut dice);
+        }
+    }
+}
+
+/// A push closes nothing, and a robot off all poses flies back over what is free.
+#[test]
+fn a_pushed_robot_flies_back() {
+    // A shaft, one voxel wide, in the floor.
+    let mut walls: BTreeSet<Voxel> = all().filter(|voxel| voxel.z < 3).collect();
+    let shaft = [2, 1, 0].map(|z| Voxel::new(START.x, START.y, z));
+    shaft.iter().for_each(|voxel| {
+        walls.remove(voxel);
+    });
+    let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+    robot.observe(START, &look(&walls, START));
+    robot.tick();
+    let mut at = shaft[2];
+    for up in [1, 2, 3, 4] {
+        robot.observe(at, &look(&walls, at));
+        let expected = Voxel::new(START.x, START.y, up);
+        assert_eq!(robot.tick(), Action::Move(expected));
+        at = expected;
+    }
+    assert!(!robot.is_closed);
+}

@@ -33,4 +33,4 @@ pub use voxels::{
 pub use wire::{Inbox, MAX_MESSAGE, ReadError, decode, encode};
 
 /// Raised whenever a message changes: both sides must be built from one source.
-pub const VERSION: u8 = 4;
+pub const VERSION: u8 = 5;

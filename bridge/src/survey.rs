@@ -164,6 +164,7 @@ fn heights_of(patch: &Patch) -> impl Iterator<Item = u8> {
 
 /// A number that tells maps apart. Two maps of different compiled sizes with the same
 /// columns have the same one.
+#[inline(never)] // what it keeps on the stack goes with it
 pub fn surface_hash<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>) -> u32 {
     let known = surface
         .tiles()
@@ -173,6 +174,7 @@ pub fn surface_hash<const TW: usize, const TH: usize>(surface: &Surface<TW, TH>)
 }
 
 /// A number that tells apart what robots would tell.
+#[inline(never)] // what it keeps on the stack goes with it
 pub fn patches_hash<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> u32 {
     hash(knowledge.patches())
 }

@@ -67,6 +67,7 @@ pub(crate) fn serve(
 }
 
 /// Sets up the planner, in place. Returns its size too.
+#[inline(never)] // what it keeps on the stack goes with it
 fn prepare(
     planner: SurveyorConfig,
     id: RobotId,

@@ -8,9 +8,10 @@
 //! empty, by looking at all cells: the waves then reach the same cells, but not by the
 //! shortest ways.
 //!
-//! An *exact* wave is alone, and its ways are the shortest whatever the queue holds. It
-//! needs no label, so each cell keeps its distance modulo 3 there: what a layer has lost
-//! is found by that before the next one begins. Its one goal is the robot.
+//! An *exact* wave is alone, and its ways are the shortest whatever the queue holds ([`exact`]).
+
+mod cell;
+mod exact;
 
 use super::body::TILE_WORK;
 use super::others::MAX_OTHERS;
@@ -47,24 +48,6 @@ pub(crate) const STEP_WORK: u32 = VISIT_WORK + 4 * LOAD_WORK;
 const CHUNK: usize = 256;
 /// Cells that are looked at for lost ones at a time.
 const SOME: usize = 32;
-
-/// What is known of a cell: a byte, with these bits.
-mod cell {
-    /// A frontier cell that is spoken for.
-    pub(super) const TAKEN: u8 = 1 << 6;
-    /// A wave has reached the cell. Then it has the label in bits 0 to 3 and the direction
-    /// back in bits 4 and 5; otherwise the bits below.
-    pub(super) const REACHED: u8 = 1 << 7;
-    pub(super) const BACK: u32 = 4;
-    pub(super) const LABEL: u8 = 0xf;
-
-    /// The map was read. Without this bit and [`REACHED`], nothing is known.
-    pub(super) const READ: u8 = 1 << 4;
-    /// Waves of others may enter; one bit higher: the robot's own may.
-    pub(super) const FREE: u8 = 1;
-    /// A goal of others; one bit higher: one of the robot's own.
-    pub(super) const GOAL: u8 = 1 << 2;
-}
 
 fn load_work<const TW: usize, const TH: usize>(around: &Surroundings<TW, TH>) -> u32 {
     match around.clearance {
@@ -138,9 +121,6 @@ struct Step<'a, 'b, const OWN: bool> {
     /// The labels that gave up.
     given_up: u16,
 }
-
-/// Distances of an exact wave are kept modulo this: cells beside each other differ.
-const RING: u8 = 3;
 
 impl<const OWN: bool> Step<'_, '_, OWN> {
     /// What tells that the wave may enter, and that it reaches a goal.
@@ -318,12 +298,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         self.is_exact = false;
     }
 
-    /// As [`begin`](Self::begin), for one exact wave, of label 0.
-    pub(crate) fn begin_exact(&mut self, extent: Extent) {
-        self.begin(extent, false);
-        self.is_exact = true;
-    }
-
     /// Forgets a chunk of the cells; says whether all are forgotten. Only then waves can
     /// be seeded.
     pub(crate) fn clear(&mut self, work: &mut u32) -> bool {
@@ -488,49 +462,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
         (pause, left)
     }
 
-    /// As [`run_through`](Self::run_through) for an exact wave, up to the end of a layer.
-    #[inline(never)]
-    fn run_exact(&mut self, cells: u32) -> (Pause, u32) {
-        let mut places = Self::places(&mut self.places, self.end);
-        let bytes = self.cells.as_flattened_mut().as_flattened_mut();
-        let end = (self.end as usize).min(bytes.len());
-        let mut notes = Notes {
-            has_lost: false,
-            has_met: false,
-        };
-        let mut wave = Step::<true> {
-            bytes: bytes.get_mut(..end).unwrap_or_default(),
-            places: &mut places,
-            queue: &mut self.queue,
-            notes: &mut notes,
-            mark: cell::REACHED | (self.layer % u32::from(RING)) as u8,
-            given_up: 0,
-        };
-        let mut left = cells;
-        let pause = loop {
-            if !self.is_under_way {
-                if left == 0 {
-                    break Pause::Enough;
-                }
-                if wave.queue.first == self.layer_end {
-                    break Pause::Layer;
-                }
-                let Some(first) = wave.queue.pop(wave.places) else {
-                    break Pause::Layer;
-                };
-                left -= 1;
-                self.from = first as u32;
-            }
-            let pause = wave.enter_all(self.from as usize, self.stride as usize);
-            self.is_under_way = pause.is_some();
-            if let Some(pause) = pause {
-                break pause;
-            }
-        };
-        self.has_lost |= notes.has_lost;
-        (pause, left)
-    }
-
     /// Reads the tile of a cell from the map, but for what waves have reached that did not
     /// give up.
     #[inline(never)] // once a tile, and again where a wave gave up
@@ -590,35 +521,6 @@ impl<const TW: usize, const TH: usize> Wave<TW, TH> {
             self.searched += 1;
         }
         true
-    }
-
-    /// The next layer of an exact wave begins; what was lost belongs to it. False if there
-    /// is nothing in it.
-    fn begin_layer(&mut self) -> bool {
-        let has_lost = core::mem::take(&mut self.has_lost);
-        if has_lost {
-            self.searched = 0;
-        }
-        self.layer += 1;
-        self.layer_end = self.queue.end;
-        has_lost || self.queue.first != self.queue.end
-    }
-
-    /// As [`find_lost`](Self::find_lost) for an exact wave: the next cell of this layer,
-    /// all of which stood in the queue or were lost, has its neighbours looked at, once
-    /// more at worst.
-    #[cold]
-    fn find_lost_of_layer(&mut self) {
-        let layer = ((self.layer + 2) % u32::from(RING)) as u8;
-        for number in (self.searched..self.end).take(SOME) {
-            self.searched = number + 1;
-            let byte = self.byte(number as usize);
-            if byte & (cell::REACHED | cell::LABEL) == cell::REACHED | layer {
-                self.from = number;
-                self.is_under_way = true;
-                break;
-            }
-        }
     }
 
     /// Steps that the waves have made at most: the distance of what they reach next.

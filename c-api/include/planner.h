@@ -137,7 +137,7 @@ typedef enum {
   PLANNER_RESULT_SAVE_OTHER_ROBOT = 27,
   // The grid was moved 16 times since the robot stopped last.
   PLANNER_RESULT_TOO_OFTEN = 28,
-  // The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`.
+  // The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`, or not more than the clearance.
   PLANNER_RESULT_RANGE = 29,
   // The heading is above 7.
   PLANNER_RESULT_HEADING = 30,
@@ -443,8 +443,15 @@ typedef struct {
   uint16_t depth;
   // Its levels.
   uint8_t levels;
-  // How far a look reaches, in voxels: 2 to `PLANNER_VOXEL_MAX_RANGE`.
+  // How far a look reaches, in voxels: 2 to `PLANNER_VOXEL_MAX_RANGE`, and more than
+  // `clearance`.
   uint8_t range;
+  // How far the robot's body reaches beyond the voxel of its middle: 0 to 3. With 0 it
+  // stays in its voxel, with 1 those that share a face with it are kept free, then all
+  // within so many voxels.
+  uint8_t clearance;
+  // Not 0: a robot that has surveyed all flies home, to where it was first, before it stops.
+  uint8_t come_home;
   // What a look shows: a `PlannerVoxelField`.
   uint8_t field;
   // For `PLANNER_VOXEL_FIELD_CUSTOM`, how far up it shows: the tangent of the highest
@@ -455,8 +462,8 @@ typedef struct {
   // The tangent of half its width on the plan, in 256ths; 0: it shows all round.
   uint16_t side;
   // Distance in voxels within which it shows everything in all directions. A robot that
-  // feels less than 2 flies only where its field itself has shown every voxel beside its
-  // way.
+  // feels less than `clearance` + 1 flies only where its field itself has shown room for its
+  // body.
   uint8_t near;
   // Side of a voxel in millimetres, above 0.
   uint16_t cell_mm;
@@ -498,7 +505,7 @@ typedef struct {
   // What to do. Nothing is reported after a move: the next look tells where the robot is.
   PlannerActionKind kind;
   // For a move, where to fly: a voxel that shares a face with the robot's, and that has
-  // nothing beside it. Otherwise where the robot is.
+  // room for its body. Otherwise where the robot is.
   PlannerVoxel to;
   // Where the sensor should be turned in the next look, which is 0 before the first tick:
   // eighths of a turn from the east over the south, 0 to 7. It may turn while the robot
@@ -511,7 +518,7 @@ typedef struct {
   // Free voxels beside unknown ones, for a stop.
   uint32_t frontiers;
   // The voxel that could not be entered, for `PLANNER_STOP_BLOCKED`, or be seen, for
-  // `PLANNER_STOP_UNSEEN`.
+  // `PLANNER_STOP_UNSEEN`; home, for `PLANNER_STOP_NO_WAY`.
   PlannerVoxel at;
 } PlannerVoxelAction;
 
@@ -874,9 +881,10 @@ PlannerResult planner_voxel_create(PlannerVoxelSurvey *survey,
 // `PLANNER_STOP_UNSEEN`, and 100 looks in a row that show nothing are those of a sensor that
 // failed. Voxels outside of the box are passed over.
 //
-// A robot that is not where the last move sent it was kept from there.
-// `PLANNER_RESULT_OFF_GRID`: it is not in the box; nothing is learnt and nothing decided
-// until it is. Any other result but `PLANNER_RESULT_OK` changes nothing.
+// A robot that is where it was, and not where the last move sent it, was kept from there;
+// one that is elsewhere was pushed, and flies on. `PLANNER_RESULT_OFF_GRID`: it is not in the
+// box; nothing is learnt and nothing decided until it is. Any other result but
+// `PLANNER_RESULT_OK` changes nothing.
 //
 // Work: the voxels seen, and at most a ray for each voxel within range.
 //
@@ -898,6 +906,22 @@ PlannerResult planner_voxel_tick(PlannerVoxelSurvey *survey, PlannerVoxelAction 
 //
 // Stack: 128 bytes.
 PlannerResult planner_voxel_resume(PlannerVoxelSurvey *survey);
+
+// Sends the robot home, to where it was first, also from a stop. It stops there with
+// `PLANNER_STOP_HOME`, or says why not: `PLANNER_STOP_NO_WAY` or `PLANNER_STOP_BLOCKED`.
+// `planner_voxel_resume` then goes on surveying.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_go_home(PlannerVoxelSurvey *survey);
+
+// Tells the planner for how many ticks in the air the robot's energy lasts from now on; each
+// that does not stop takes one off, in a wait too, until it is told again. The robot turns
+// back in time for the shortest way home that it knows and the search for it, and stops there
+// with `PLANNER_STOP_HOME`; told more, `planner_voxel_resume` goes on surveying. Without this
+// call there is no limit.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_energy(PlannerVoxelSurvey *survey, uint32_t ticks);
 
 // Writes the next frame for the other robots into `frame`, which holds `PLANNER_MAX_FRAME`
 // bytes, and its length into `length`: 0 if there is nothing to send any more. Work: 256

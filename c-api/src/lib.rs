@@ -44,9 +44,9 @@ pub use voxels::{
     PLANNER_VOXEL_MAX_LEVELS, PLANNER_VOXEL_MAX_RANGE, PLANNER_VOXEL_MAX_SIDE,
     PLANNER_VOXEL_SURVEY_WORDS, PlannerVoxel, PlannerVoxelAction, PlannerVoxelConfig,
     PlannerVoxelField, PlannerVoxelSeen, PlannerVoxelStatus, PlannerVoxelSurvey,
-    planner_voxel_create, planner_voxel_hear, planner_voxel_observe, planner_voxel_receive,
-    planner_voxel_resume, planner_voxel_state, planner_voxel_status, planner_voxel_tick,
-    planner_voxel_transmit,
+    planner_voxel_create, planner_voxel_energy, planner_voxel_go_home, planner_voxel_hear,
+    planner_voxel_observe, planner_voxel_receive, planner_voxel_resume, planner_voxel_state,
+    planner_voxel_status, planner_voxel_tick, planner_voxel_transmit,
 };
 pub use zones::{
     PLANNER_ZONE_BEAMS, PLANNER_ZONES, PlannerZone, PlannerZoneSensor, planner_zone_beams,

@@ -73,7 +73,7 @@ pub enum PlannerResult {
     SaveOtherRobot = 27,
     /// The grid was moved 16 times since the robot stopped last.
     TooOften = 28,
-    /// The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`.
+    /// The range is not 2 to `PLANNER_VOXEL_MAX_RANGE`, or not more than the clearance.
     Range = 29,
     /// The heading is above 7.
     Heading = 30,

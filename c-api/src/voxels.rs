@@ -1,7 +1,7 @@
 //! The planner among voxels: robots that fly under bridges, through doors, around towers.
 
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
-use planner_core::volume::{Content, Field, Heading, Volume, Voxel};
+use planner_core::volume::{Content, Field, Heading, MAX_CLEARANCE, Volume, Voxel};
 use planner_core::voxel_survey::{Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Action, Activity, Extent, RobotId, Status};
 
@@ -91,8 +91,15 @@ pub struct PlannerVoxelConfig {
     pub depth: u16,
     /// Its levels.
     pub levels: u8,
-    /// How far a look reaches, in voxels: 2 to `PLANNER_VOXEL_MAX_RANGE`.
+    /// How far a look reaches, in voxels: 2 to `PLANNER_VOXEL_MAX_RANGE`, and more than
+    /// `clearance`.
     pub range: u8,
+    /// How far the robot's body reaches beyond the voxel of its middle: 0 to 3. With 0 it
+    /// stays in its voxel, with 1 those that share a face with it are kept free, then all
+    /// within so many voxels.
+    pub clearance: u8,
+    /// Not 0: a robot that has surveyed all flies home, to where it was first, before it stops.
+    pub come_home: u8,
     /// What a look shows: a `PlannerVoxelField`.
     pub field: u8,
     /// For `PLANNER_VOXEL_FIELD_CUSTOM`, how far up it shows: the tangent of the highest
@@ -103,8 +110,8 @@ pub struct PlannerVoxelConfig {
     /// The tangent of half its width on the plan, in 256ths; 0: it shows all round.
     pub side: u16,
     /// Distance in voxels within which it shows everything in all directions. A robot that
-    /// feels less than 2 flies only where its field itself has shown every voxel beside its
-    /// way.
+    /// feels less than `clearance` + 1 flies only where its field itself has shown room for its
+    /// body.
     pub near: u8,
     /// Side of a voxel in millimetres, above 0.
     pub cell_mm: u16,
@@ -164,7 +171,7 @@ pub struct PlannerVoxelAction {
     /// What to do. Nothing is reported after a move: the next look tells where the robot is.
     pub kind: PlannerActionKind,
     /// For a move, where to fly: a voxel that shares a face with the robot's, and that has
-    /// nothing beside it. Otherwise where the robot is.
+    /// room for its body. Otherwise where the robot is.
     pub to: PlannerVoxel,
     /// Where the sensor should be turned in the next look, which is 0 before the first tick:
     /// eighths of a turn from the east over the south, 0 to 7. It may turn while the robot
@@ -177,7 +184,7 @@ pub struct PlannerVoxelAction {
     /// Free voxels beside unknown ones, for a stop.
     pub frontiers: u32,
     /// The voxel that could not be entered, for `PLANNER_STOP_BLOCKED`, or be seen, for
-    /// `PLANNER_STOP_UNSEEN`.
+    /// `PLANNER_STOP_UNSEEN`; home, for `PLANNER_STOP_NO_WAY`.
     pub at: PlannerVoxel,
 }
 
@@ -238,11 +245,17 @@ pub extern "C" fn planner_voxel_create(
         if config.cell_mm == 0 {
             return Err(PlannerResult::CellSize);
         }
-        if !(2..=PLANNER_VOXEL_MAX_RANGE).contains(&config.range) {
+        if config.clearance > MAX_CLEARANCE {
+            return Err(PlannerResult::Clearance);
+        }
+        let least = 2.max(config.clearance + 1);
+        if !(least..=PLANNER_VOXEL_MAX_RANGE).contains(&config.range) {
             return Err(PlannerResult::Range);
         }
         let ours = Config {
             range: config.range,
+            clearance: config.clearance,
+            come_home: config.come_home != 0,
             field: config.field().ok_or(PlannerResult::Sensor)?,
             link: LinkConfig {
                 origin_mm: (config.origin_x_mm, config.origin_y_mm),
@@ -266,9 +279,10 @@ pub extern "C" fn planner_voxel_create(
 /// `PLANNER_STOP_UNSEEN`, and 100 looks in a row that show nothing are those of a sensor that
 /// failed. Voxels outside of the box are passed over.
 ///
-/// A robot that is not where the last move sent it was kept from there.
-/// `PLANNER_RESULT_OFF_GRID`: it is not in the box; nothing is learnt and nothing decided
-/// until it is. Any other result but `PLANNER_RESULT_OK` changes nothing.
+/// A robot that is where it was, and not where the last move sent it, was kept from there;
+/// one that is elsewhere was pushed, and flies on. `PLANNER_RESULT_OFF_GRID`: it is not in the
+/// box; nothing is learnt and nothing decided until it is. Any other result but
+/// `PLANNER_RESULT_OK` changes nothing.
 ///
 /// Work: the voxels seen, and at most a ray for each voxel within range.
 ///
@@ -347,6 +361,37 @@ pub extern "C" fn planner_voxel_tick(
 pub extern "C" fn planner_voxel_resume(survey: *mut PlannerVoxelSurvey) -> PlannerResult {
     answer(|| {
         robot(survey)?.planner.resume();
+        Ok(())
+    })
+}
+
+/// Sends the robot home, to where it was first, also from a stop. It stops there with
+/// `PLANNER_STOP_HOME`, or says why not: `PLANNER_STOP_NO_WAY` or `PLANNER_STOP_BLOCKED`.
+/// `planner_voxel_resume` then goes on surveying.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_voxel_go_home(survey: *mut PlannerVoxelSurvey) -> PlannerResult {
+    answer(|| {
+        robot(survey)?.planner.go_home();
+        Ok(())
+    })
+}
+
+/// Tells the planner for how many ticks in the air the robot's energy lasts from now on; each
+/// that does not stop takes one off, in a wait too, until it is told again. The robot turns
+/// back in time for the shortest way home that it knows and the search for it, and stops there
+/// with `PLANNER_STOP_HOME`; told more, `planner_voxel_resume` goes on surveying. Without this
+/// call there is no limit.
+///
+/// Stack: 128 bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn planner_voxel_energy(
+    survey: *mut PlannerVoxelSurvey,
+    ticks: u32,
+) -> PlannerResult {
+    answer(|| {
+        robot(survey)?.planner.energy(ticks);
         Ok(())
     })
 }

@@ -264,7 +264,7 @@ static void maps_are_read(Planner *planner) {
 }
 
 static PlannerVoxelConfig usual_box(void) {
-    return (PlannerVoxelConfig){.id = 1, .width = 9, .depth = 8, .levels = 7, .range = 4, .cell_mm = 500, .bytes_per_tick = 550};
+    return (PlannerVoxelConfig){.id = 1, .width = 9, .depth = 8, .levels = 7, .range = 4, .clearance = 1, .cell_mm = 500, .bytes_per_tick = 550};
 }
 
 // Every call but create, on memory that holds no planner among voxels.
@@ -278,6 +278,8 @@ static void no_survey_is_created(PlannerVoxelSurvey *survey) {
     CHECK(planner_voxel_observe(survey, at, 0, NULL, 0), wanted);
     CHECK(planner_voxel_tick(survey, &action), wanted);
     CHECK(planner_voxel_resume(survey), wanted);
+    CHECK(planner_voxel_go_home(survey), wanted);
+    CHECK(planner_voxel_energy(survey, 9), wanted);
     CHECK(planner_voxel_transmit(survey, frame, &length), wanted);
     CHECK(planner_voxel_receive(survey, frame, 16), wanted);
     CHECK(planner_voxel_hear(survey, 2, &status), wanted);

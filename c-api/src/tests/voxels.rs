@@ -15,6 +15,8 @@ const BOX: PlannerVoxelConfig = PlannerVoxelConfig {
     depth: 5,
     levels: 4,
     range: 3,
+    clearance: 1,
+    come_home: 0,
     field: PlannerVoxelField::AllRound as u8,
     up: 0,
     down: 0,
@@ -129,7 +131,7 @@ fn frames(survey: *mut PlannerVoxelSurvey) -> Vec<Vec<u8>> {
 }
 
 /// The same planner in Rust.
-fn twin(field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
+fn twin(ours: PlannerVoxelConfig, field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
     let link = LinkConfig {
         origin_mm: (BOX.origin_x_mm, BOX.origin_y_mm),
         cell_mm: BOX.cell_mm,
@@ -137,8 +139,10 @@ fn twin(field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
         key: None,
     };
     let config = voxel_survey::Config {
-        range: BOX.range,
+        range: ours.range,
+        clearance: ours.clearance,
         field,
+        come_home: ours.come_home != 0,
         link,
         ..voxel_survey::Config::new()
     };
@@ -149,12 +153,24 @@ fn twin(field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
     twin
 }
 
-/// Flies until the stop, and decides each time as the same planner in Rust.
+/// Surveys the box until the stop, and decides each time as the same planner in Rust.
 fn survey_box(config: PlannerVoxelConfig, field: Field) -> *mut PlannerVoxelSurvey {
     let survey = ready(Box::leak(room()), config);
-    let mut twin = twin(field);
-    let (mut at, mut heading) = (START, Heading::EAST);
-    for _ in 0..2000 {
+    fly(survey, &mut twin(config, field), field, START, 2000);
+    survey
+}
+
+/// Flies until the stop, or so many ticks, and decides each time as the same planner in Rust:
+/// why it stopped, and where it is.
+fn fly(
+    survey: *mut PlannerVoxelSurvey,
+    twin: &mut VoxelSurvey<5, 5, 16>,
+    field: Field,
+    from: Voxel,
+    ticks: u32,
+) -> (PlannerStop, Voxel) {
+    let (mut at, mut heading) = (from, twin.heading());
+    for _ in 0..ticks {
         let view = view(field, at, heading);
         assert_eq!(observe(survey, at, heading, &view), OK);
         twin.observe_towards(at, heading, &view);
@@ -178,11 +194,12 @@ fn survey_box(config: PlannerVoxelConfig, field: Field) -> *mut PlannerVoxelSurv
             Action::Stop(stop) => {
                 assert_eq!(action.kind, PlannerActionKind::Stop);
                 assert_eq!(action.stop, stop.reason().into());
-                return survey;
+                assert_eq!(action.frontiers, stop.left());
+                return (action.stop, at);
             }
         }
     }
-    panic!("it does not stop");
+    (PlannerStop::None, at)
 }
 
 #[test]
@@ -234,6 +251,47 @@ fn a_box_is_surveyed_as_in_rust() {
         }
         assert_eq!(planner_voxel_resume(survey), OK);
         assert_eq!(told(survey).has_stopped, 0);
+    }
+}
+
+#[test]
+fn a_box_is_left_for_home_as_in_rust() {
+    let field = Field::ALL_ROUND;
+    let small = PlannerVoxelConfig {
+        clearance: 0,
+        ..BOX
+    };
+    for config in [BOX, small] {
+        let come_home = PlannerVoxelConfig {
+            come_home: 1,
+            ..config
+        };
+        let survey = ready(Box::leak(room()), come_home);
+        let mut robot = twin(come_home, field);
+        let end = fly(survey, &mut robot, field, START, 2000);
+        assert_eq!(end, (PlannerStop::Complete, START));
+
+        let survey = ready(Box::leak(room()), config);
+        let mut robot = twin(config, field);
+        let (stop, away) = fly(survey, &mut robot, field, START, 5);
+        assert!(stop == PlannerStop::None && away != START);
+        assert_eq!(planner_voxel_go_home(survey), OK);
+        robot.go_home();
+        let end = fly(survey, &mut robot, field, away, 50);
+        assert_eq!(end, (PlannerStop::Home, START));
+
+        // With energy for a few ticks it comes back; with more it goes on.
+        for ticks in [9, 1000] {
+            assert_eq!(planner_voxel_resume(survey), OK);
+            robot.resume();
+            assert_eq!(planner_voxel_energy(survey, ticks), OK);
+            robot.energy(ticks);
+            let (stop, at) = fly(survey, &mut robot, field, START, 2000);
+            match ticks {
+                9 => assert_eq!((stop, at), (PlannerStop::Home, START)),
+                _ => assert_eq!(stop, PlannerStop::Complete),
+            }
+        }
     }
 }
 
@@ -378,6 +436,21 @@ fn what_a_survey_cannot_be_is_answered_and_changes_nothing() {
             PlannerResult::Range,
         ),
         (
+            PlannerVoxelConfig {
+                range: 2,
+                clearance: 2,
+                ..BOX
+            },
+            PlannerResult::Range,
+        ),
+        (
+            PlannerVoxelConfig {
+                clearance: 4,
+                ..BOX
+            },
+            PlannerResult::Clearance,
+        ),
+        (
             PlannerVoxelConfig { field: 5, ..BOX },
             PlannerResult::Sensor,
         ),
@@ -422,6 +495,8 @@ fn calls_without_a_survey_are_answered() {
             planner_voxel_observe(survey, at, 0, null(), 0),
             planner_voxel_tick(survey, &mut action),
             planner_voxel_resume(survey),
+            planner_voxel_go_home(survey),
+            planner_voxel_energy(survey, 9),
             planner_voxel_transmit(survey, frame.as_mut_ptr(), &mut length),
             planner_voxel_receive(survey, frame.as_ptr(), 16),
             planner_voxel_hear(survey, 2, &UNASKED),
@@ -429,17 +504,17 @@ fn calls_without_a_survey_are_answered() {
             planner_voxel_state(survey, at, frame.as_mut_ptr()),
         ]
     };
-    assert_eq!(all(survey), [PlannerResult::NotCreated; 8]);
-    assert_eq!(all(null_mut()), [PlannerResult::Null; 8]);
+    assert_eq!(all(survey), [PlannerResult::NotCreated; 10]);
+    assert_eq!(all(null_mut()), [PlannerResult::Null; 10]);
     assert_eq!(
         all(survey.wrapping_byte_add(1)),
-        [PlannerResult::Misaligned; 8]
+        [PlannerResult::Misaligned; 10]
     );
     // A planner on the ground is none among voxels.
     assert!(size_of::<Planner>() >= BYTES);
     let mut ground = super::memory();
     let planner = created(&mut ground, CONFIG);
-    assert_eq!(all(planner.cast()), [PlannerResult::NotCreated; 8]);
+    assert_eq!(all(planner.cast()), [PlannerResult::NotCreated; 10]);
 
     let survey = ready(&mut memory, BOX);
     let mut places = [0u64; 8];

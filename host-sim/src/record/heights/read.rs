@@ -200,8 +200,15 @@ impl Replay {
     fn look(&mut self, tick: u32, robots: impl IntoIterator<Item = usize>) {
         let trace = &mut self.trace;
         let width = usize::from(trace.extent.width);
+        let faults = &trace.scenario.conditions.faults;
         for robot in robots {
+            if faults.is_lost(robot, tick) || faults.has_failed(robot, tick) {
+                continue;
+            }
             for column in look(&trace.terrain, self.at[robot], trace.scenario.limits.range) {
+                if faults.is_blind(column.cell, tick) {
+                    continue;
+                }
                 let index = column.cell.y as usize * width + column.cell.x as usize;
                 if !std::mem::replace(&mut self.known[index], true) {
                     trace.found.push((tick, column));

@@ -347,7 +347,7 @@ mod tests {
     use host_sim::run::{heights, voxels};
     use host_sim::terrain::TerrainSource;
 
-    use super::setup::tests::{compared, filmed, town, unusual};
+    use super::setup::tests::{compared, filmed, homing, town, unusual};
     use super::*;
 
     fn flown(setup: SurveySetup) -> SurveyScene {
@@ -367,7 +367,7 @@ mod tests {
             size: 24,
             ..SurveySetup::default()
         };
-        for setup in [hills, unusual(), town(), filmed(), compared()] {
+        for setup in [hills, unusual(), town(), filmed(), compared(), homing()] {
             let scene = flown(setup.clone());
             let digest = match setup.terrain.scene(setup.size) {
                 Some(scene) => voxels::run(&scene, &setup.voxel_scenario())
@@ -408,7 +408,7 @@ mod tests {
 
     #[test]
     fn a_saved_trace_shows_what_was_flown() {
-        for setup in [unusual(), town(), filmed(), compared()] {
+        for setup in [unusual(), town(), filmed(), compared(), homing()] {
             let flown = flown(setup.clone());
             let (_, file) = flown.export(Export::Trace).unwrap();
             let mut replay = match setup.terrain {

@@ -3,9 +3,9 @@
 use std::mem::discriminant;
 
 use clap::ValueEnum;
-use egui::{DragValue, RichText, Slider, Ui};
+use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
 use host_sim::scenario::heights::Planner;
-use host_sim::scenario::voxels;
+use host_sim::scenario::{Mission, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
@@ -48,6 +48,9 @@ impl App {
                 DragValue::new(&mut setup.conditions.seed),
             );
         });
+        if !setup.is_of_voxels() {
+            mission(ui, &mut setup.conditions.mission);
+        }
         events(ui, &mut setup.conditions.faults);
         title(ui, "Radio");
         medium(ui, &mut setup.conditions);
@@ -78,8 +81,8 @@ impl App {
             _ => "Click a drone; drag to turn, scroll to zoom.",
         };
         ui.label(RichText::new(hint).weak());
-        let setup = setup.tidied();
-        if (&setup, self.survey_rival) != (&before.0, before.1) && !self.fly(setup) {
+        let is_changed = (&setup, self.survey_rival) != (&before.0, before.1);
+        if is_changed && !self.fly(setup.tidied()) {
             self.survey_rival = before.1;
         }
         title(ui, "Export");
@@ -99,6 +102,16 @@ fn sensor(ui: &mut Ui, setup: &mut SurveySetup) {
         slider(ui, "degrees high", &mut height, Fov::HEIGHTS);
         setup.fov = Fov::new(width, height).unwrap_or(setup.fov);
     }
+}
+
+/// Where the drones go in the end, and how long they can fly.
+fn mission(ui: &mut Ui, mission: &mut Mission) {
+    ui.checkbox(&mut mission.come_home, "come home in the end");
+    let energy = Slider::new(&mut mission.energy, 0..=5000).logarithmic(true);
+    let energy = energy
+        .smallest_positive(10.0)
+        .clamping(SliderClamping::Edits);
+    ui.add(energy.text("energy (0: no limit)"));
 }
 
 /// A kind of place, drawn by a seed.

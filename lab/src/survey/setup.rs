@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::scenario::heights::{Planner, Scenario};
-use host_sim::scenario::{Conditions, MediumKind, voxels};
+use host_sim::scenario::{Conditions, MediumKind, Mission, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
@@ -168,6 +168,11 @@ impl SurveySetup {
         self.is_of_voxels() && self.voxel_planner == voxels::Planner::VoxelSurvey
     }
 
+    /// Whether its planner knows the way home.
+    pub fn has_mission(&self) -> bool {
+        !self.is_of_voxels() || self.voxel_planner == voxels::Planner::VoxelSurvey
+    }
+
     /// The same without what does not apply.
     #[must_use]
     pub fn tidied(mut self) -> Self {
@@ -176,6 +181,9 @@ impl SurveySetup {
         }
         if self.sensor != Sensor::Camera {
             self.fov = Fov::default();
+        }
+        if !self.has_mission() {
+            self.conditions.mission = Mission::default();
         }
         if self.is_drawn() {
             self.size = self.size.min(*self.sizes().end());
@@ -378,6 +386,20 @@ pub(super) mod tests {
         }
     }
 
+    /// Home, in time.
+    pub(in crate::survey) fn homing() -> SurveySetup {
+        SurveySetup {
+            conditions: Conditions {
+                mission: Mission {
+                    come_home: true,
+                    energy: 2000,
+                },
+                ..conditions()
+            },
+            ..unusual()
+        }
+    }
+
     pub(in crate::survey) fn filmed() -> SurveySetup {
         SurveySetup {
             sensor: Sensor::Camera,
@@ -402,6 +424,7 @@ pub(super) mod tests {
             town(),
             filmed(),
             compared(),
+            homing(),
         ] {
             let address = setup.address();
             assert!(SurveySetup::is_meant(&address));
@@ -460,6 +483,14 @@ pub(super) mod tests {
             "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
              --sensor camera --fov 100x60 --medium ideal --loss 0.25 --seed 7"
         );
+        let command = homing().command();
+        assert!(command.ends_with(" --come-home --energy 2000"), "{command}");
+        let elsewhere = SurveySetup {
+            terrain: TerrainSource::Town(2),
+            voxel_planner: voxels::Planner::Greedy,
+            ..homing()
+        };
+        assert!(!elsewhere.tidied().command().contains("--energy"));
         assert_eq!(
             compared().command(),
             "cargo run --release -- survey --terrain town:2 --size 24 --planner greedy --robots 3 \

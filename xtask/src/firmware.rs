@@ -17,7 +17,7 @@ pub(crate) const TARGET: &str = "thumbv7em-none-eabihf";
 const MACHINE: &str = "netduinoplus2";
 
 /// Many times what any of the images takes.
-const LIMIT: Duration = Duration::from_secs(120);
+const LIMIT: Duration = Duration::from_secs(300);
 
 /// A linked image.
 pub(crate) struct Image {

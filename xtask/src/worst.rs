@@ -13,6 +13,16 @@ const OTHERS: [u32; 3] = [0, 9, 15];
 /// Beams of the scans that it tries.
 const BEAMS: [u32; 3] = [4, 16, 64];
 
+/// Sensors and sizes that the planner among voxels is tried with.
+const VOXEL_SETUPS: [&str; 6] = [
+    "",
+    "_18_levels",
+    "_camera",
+    "_downward",
+    "_lidar",
+    "_range_12",
+];
+
 /// The worst calls keep to the budget, whatever the map's size and the number of robots.
 pub(crate) fn keeps_to_the_budget() -> Result<String> {
     install::qemu()?;
@@ -118,12 +128,17 @@ impl Figures {
             self.figure("cao_step")?,
         ));
         let mut stack = 0;
-        for call in ["observe", "tick", "transmit", "receive"] {
-            measured.push((
-                format!("worst_voxel_survey_{call}_instructions"),
-                self.figure(&format!("voxel_survey_{call}"))?,
-            ));
-            stack = stack.max(self.figure(&format!("voxel_survey_{call}_stack"))?);
+        for setup in VOXEL_SETUPS {
+            let calls: &[&str] = match setup {
+                "" => &["observe", "tick", "transmit", "receive"],
+                _ => &["tick"],
+            };
+            for call in calls {
+                let name = format!("voxel_survey{setup}_{call}");
+                let measure = format!("worst_{name}_instructions");
+                measured.push((measure, self.figure(&name)?));
+                stack = stack.max(self.figure(&format!("{name}_stack"))?);
+            }
         }
         measured.push(("worst_voxel_survey_stack_bytes".into(), stack));
         let (work, bound) = (self.explorer("work")?, self.explorer("work_bound")?);

@@ -44,11 +44,12 @@ pub(crate) struct View {
 
 /// Voxels of a row that are in sight.
 pub(crate) struct Row {
-    y: i16,
-    z: i16,
-    /// The voxel of bit 0.
-    x: i16,
-    bits: u32,
+    eye: Voxel,
+    /// How far south and up of the eye it lies.
+    pub(crate) south: i16,
+    pub(crate) up: i16,
+    /// Bit `MAX_REACH` + x is the voxel that far east of the eye.
+    pub(crate) bits: u32,
 }
 
 impl Row {
@@ -57,10 +58,20 @@ impl Row {
         self.bits.count_ones()
     }
 
-    /// They themselves.
-    pub(crate) fn voxels(&self) -> impl Iterator<Item = Voxel> {
-        let Self { x, y, z, .. } = *self;
-        bits(self.bits.into()).map(move |bit| Voxel::new(x.saturating_add(bit as i16), y, z))
+    /// Those of `bits`.
+    pub(crate) fn voxels(&self, among: u32) -> impl Iterator<Item = Voxel> {
+        let Self {
+            eye,
+            south,
+            up,
+            bits: own,
+        } = *self;
+        let (x, y, z) = (
+            eye.x.saturating_sub(REACH as i16),
+            eye.y.saturating_add(south),
+            eye.z.saturating_add(up),
+        );
+        bits((own & among).into()).map(move |bit| Voxel::new(x.saturating_add(bit as i16), y, z))
     }
 }
 
@@ -210,13 +221,19 @@ impl View {
         fronts: &mut [Front; REACH + 1],
         found: &mut impl FnMut(Row) -> ControlFlow<()>,
     ) -> ControlFlow<(), bool> {
-        let blocked = self.blocked.get(index(signed(k, octant.is_down)));
-        let Some(blocked) = blocked.copied() else {
+        let Self {
+            eye,
+            reach,
+            blocked: ref levels,
+            ref mut work,
+            ..
+        } = *self;
+        let Some(blocked) = levels.get(index(signed(k, octant.is_down))) else {
             return ControlFlow::Continue(false);
         };
-        let square = u32::from(self.reach) * u32::from(self.reach);
+        let square = u32::from(reach) * u32::from(reach);
         let mut before = START;
-        let mut width = u32::from(self.reach);
+        let mut width = u32::from(reach);
         let mut is_reached = false;
         for (j, front) in (0..=octant.rows).zip(fronts) {
             let is_first = j == 0 && k == 0;
@@ -231,7 +248,7 @@ impl View {
             while width * width > rest {
                 width -= 1;
             }
-            self.work = self.work.saturating_add(1);
+            *work = work.saturating_add(1);
             let within = (2 << width.min(octant.columns)) - 1;
             let row = index(signed(j, octant.is_north));
             let (Some(&blocked), Some(&wanted)) = (blocked.get(row), wanted.get(row)) else {
@@ -247,8 +264,8 @@ impl View {
             let wanted = octant.turned(wanted) & within & octant.owned(j, k);
             let mut seen = wanted & open & (run << 1 | 1);
             for i in bits((wanted & (enters | carried) & !seen).into()) {
-                self.work = self.work.saturating_add(RAY);
-                if self.is_clear([i, j, k], octant) {
+                *work = work.saturating_add(RAY);
+                if is_clear(levels, [i, j, k], octant) {
                     seen |= 1 << i;
                 }
             }
@@ -259,103 +276,15 @@ impl View {
             *front = before;
             is_reached |= before.reached != 0;
             if seen != 0 {
-                let [y, z] = [
-                    (self.eye.y, j, octant.is_north),
-                    (self.eye.z, k, octant.is_down),
-                ]
-                .map(|(eye, away, is_back)| eye.saturating_add(signed(away, is_back)));
                 found(Row {
-                    x: self.eye.x.saturating_sub(REACH as i16),
-                    y,
-                    z,
+                    eye,
+                    south: signed(j, octant.is_north),
+                    up: signed(k, octant.is_down),
                     bits: octant.turned_back(seen),
                 })?;
             }
         }
         ControlFlow::Continue(is_reached)
-    }
-
-    /// [`in_sight`](super::in_sight) of the voxel that many steps away along each axis.
-    ///
-    /// Cost: at most 7 bits for each voxel on the line.
-    // [Amanatides1987]
-    fn is_clear(&self, away: [u32; 3], octant: Octant) -> bool {
-        let [i, j, k] = away;
-        let rows = self.blocked.as_flattened();
-        let is_blocked = |(x, row): (u32, usize)| rows.get(row).is_none_or(|row| row >> x & 1 != 0);
-        let stride = |is_back: bool, by: usize| if is_back { by.wrapping_neg() } else { by };
-        let east = stride(octant.is_west, 1) as u32;
-        let south = stride(octant.is_north, 1);
-        let up = stride(octant.is_down, SPAN);
-        let in_x = |(x, row): (u32, usize)| (x.wrapping_add(east) & 31, row);
-        let in_y = |(x, row): (u32, usize)| (x, row.wrapping_add(south));
-        let in_z = |(x, row): (u32, usize)| (x, row.wrapping_add(up));
-
-        // The line crosses the n-th border along an axis at (2·n + 1) / (2·length), here over
-        // a common denominator.
-        let (a, b, c) = (i.max(1), j.max(1), k.max(1));
-        let steps = [b * c, a * c, a * b];
-        let first = |length: u32, step| if length == 0 { u32::MAX } else { step };
-        let [mut x, mut y, mut z] = [first(i, steps[0]), first(j, steps[1]), first(k, steps[2])];
-        let mut here = (REACH as u32, REACH * SPAN + REACH);
-        let mut left = i + j + k;
-        loop {
-            let next = x.min(y).min(z);
-            let crosses = (x == next, y == next, z == next);
-            let after = match crosses {
-                (true, false, false) => in_x(here),
-                (false, true, false) => in_y(here),
-                (false, false, true) => in_z(here),
-                (true, true, false) => {
-                    if is_blocked(in_x(here)) && is_blocked(in_y(here)) {
-                        return false;
-                    }
-                    in_x(in_y(here))
-                }
-                (true, false, true) => {
-                    if is_blocked(in_x(here)) && is_blocked(in_z(here)) {
-                        return false;
-                    }
-                    in_x(in_z(here))
-                }
-                (false, true, true) => {
-                    if is_blocked(in_y(here)) && is_blocked(in_z(here)) {
-                        return false;
-                    }
-                    in_y(in_z(here))
-                }
-                _ => {
-                    let [xy, xz, yz] = [in_x(in_y(here)), in_x(in_z(here)), in_y(in_z(here))];
-                    let leads = |by: (u32, usize), or: (u32, usize), from: (u32, usize)| {
-                        !(is_blocked(from) || is_blocked(by) && is_blocked(or))
-                    };
-                    let is_open = leads(xy, xz, in_x(here))
-                        || leads(xy, yz, in_y(here))
-                        || leads(xz, yz, in_z(here));
-                    if !is_open {
-                        return false;
-                    }
-                    in_x(yz)
-                }
-            };
-            for (at, step, crosses) in [
-                (&mut x, steps[0], crosses.0),
-                (&mut y, steps[1], crosses.1),
-                (&mut z, steps[2], crosses.2),
-            ] {
-                if crosses {
-                    *at = at.saturating_add(2 * step);
-                    left = left.saturating_sub(1);
-                }
-            }
-            if left == 0 {
-                return true;
-            }
-            if is_blocked(after) {
-                return false;
-            }
-            here = after;
-        }
     }
 
     /// The rows of the level that far above the eye.
@@ -390,6 +319,86 @@ impl View {
             }
         }
         slab
+    }
+}
+
+/// [`in_sight`](super::in_sight) of the voxel that many steps away along each axis, where
+/// `levels` are in the way.
+///
+/// Cost: at most 7 bits for each voxel on the line.
+// [Amanatides1987]
+fn is_clear(levels: &[Slab; SPAN], away: [u32; 3], octant: Octant) -> bool {
+    let [i, j, k] = away;
+    let rows = levels.as_flattened();
+    let is_blocked = |(x, row): (u32, usize)| rows.get(row).is_none_or(|row| row >> x & 1 != 0);
+    let stride = |is_back: bool, by: usize| if is_back { by.wrapping_neg() } else { by };
+    let east = stride(octant.is_west, 1) as u32;
+    let south = stride(octant.is_north, 1);
+    let up = stride(octant.is_down, SPAN);
+    let in_x = |(x, row): (u32, usize)| (x.wrapping_add(east) & 31, row);
+    let in_y = |(x, row): (u32, usize)| (x, row.wrapping_add(south));
+    let in_z = |(x, row): (u32, usize)| (x, row.wrapping_add(up));
+
+    // The line crosses the n-th border along an axis at (2·n + 1) / (2·length), here over
+    // a common denominator.
+    let (a, b, c) = (i.max(1), j.max(1), k.max(1));
+    let steps = [b * c, a * c, a * b];
+    let first = |length: u32, step| if length == 0 { u32::MAX } else { step };
+    let [mut x, mut y, mut z] = [first(i, steps[0]), first(j, steps[1]), first(k, steps[2])];
+    let mut here = (REACH as u32, REACH * SPAN + REACH);
+    let mut left = i + j + k;
+    loop {
+        // A border along one axis alone comes most often, and costs least so.
+        let mut crossed = 1;
+        if x < y && x < z {
+            here = in_x(here);
+            x += 2 * steps[0];
+        } else if y < x && y < z {
+            here = in_y(here);
+            y += 2 * steps[1];
+        } else if z < x && z < y {
+            here = in_z(here);
+            z += 2 * steps[2];
+        } else {
+            let (after, is_open) = if z > x {
+                let beside = [in_x(here), in_y(here)];
+                (in_x(beside[1]), !beside.into_iter().all(is_blocked))
+            } else if y > x {
+                let beside = [in_x(here), in_z(here)];
+                (in_x(beside[1]), !beside.into_iter().all(is_blocked))
+            } else if x > y {
+                let beside = [in_y(here), in_z(here)];
+                (in_y(beside[1]), !beside.into_iter().all(is_blocked))
+            } else {
+                let [xy, xz, yz] = [in_x(in_y(here)), in_x(in_z(here)), in_y(in_z(here))];
+                let leads = |by: (u32, usize), or: (u32, usize), from: (u32, usize)| {
+                    !(is_blocked(from) || is_blocked(by) && is_blocked(or))
+                };
+                let is_open = leads(xy, xz, in_x(here))
+                    || leads(xy, yz, in_y(here))
+                    || leads(xz, yz, in_z(here));
+                (in_x(yz), is_open)
+            };
+            if !is_open {
+                return false;
+            }
+            here = after;
+            let next = x.min(y).min(z);
+            crossed = 0;
+            for (at, step) in [(&mut x, steps[0]), (&mut y, steps[1]), (&mut z, steps[2])] {
+                if *at == next {
+                    *at += 2 * step;
+                    crossed += 1;
+                }
+            }
+        }
+        left = left.saturating_sub(crossed);
+        if left == 0 {
+            return true;
+        }
+        if is_blocked(here) {
+            return false;
+        }
     }
 }
 

@@ -9,6 +9,9 @@ use crate::volume::{Heading, View, Voxel, word_work};
 /// Work of a word of which the poses are found.
 const WORD: u32 = 10;
 
+/// Work of telling which headings show a row.
+const SHOWN: u32 = 3;
+
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Number of unknown voxels in sight of `pose` where unknown voxels do not block
     /// sight, at most `enough`; of a sensor that does not show all round, that of the best
@@ -58,8 +61,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let (volume, field) = (&self.volume, self.field);
         let looked = self.looked_from(pose);
         let mut view = View::new(pose, self.range);
-        let mut most = 0u32;
         let mut gains = Gains::default();
+        let mut most = 0u32;
+        let mut rows = 0u32;
         if view.aim(|tile, z| volume.unknown(tile, z)) {
             let _ = view.look(
                 |tile, z| volume.occupied(tile, z),
@@ -68,12 +72,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                     if field.is_whole() {
                         most = most.saturating_add(row.count());
                     } else {
-                        for voxel in row.voxels() {
-                            let shown = field.headings(pose, voxel);
-                            if shown & looked == 0 {
-                                gains.add(shown);
-                            }
-                        }
+                        rows = rows.saturating_add(1);
+                        gains.add(row.bits, field.rows(row.south, row.up), looked);
                         most = gains.best().0;
                     }
                     if most < enough {
@@ -84,7 +84,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 },
             );
         }
-        self.work = self.work.saturating_add(view.work);
+        let work = view.work.saturating_add(rows.saturating_mul(SHOWN));
+        self.work = self.work.saturating_add(work);
         (most.min(enough), gains.best().1)
     }
 
@@ -104,8 +105,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             |tile, z| volume.bad(tile, z),
             unknown,
             |row| {
-                let shown = row.voxels();
-                for voxel in shown.filter(|&voxel| field.shows(here, heading, voxel)) {
+                for voxel in row.voxels(field.row(heading, row.south, row.up)) {
                     self.has_missed = true;
                     missed.set(voxel);
                 }
@@ -120,11 +120,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 struct Gains([u32; 8]);
 
 impl Gains {
-    fn add(&mut self, headings: u8) {
-        for (heading, gain) in Heading::all().zip(&mut self.0) {
-            if headings & heading.bit() != 0 {
-                *gain = gain.saturating_add(1);
-            }
+    /// Adds a row, of which each heading shows those of `shown`; headings that were `looked`
+    /// at show nothing more.
+    fn add(&mut self, row: u32, shown: [u32; 8], looked: u8) {
+        let all = || Heading::all().zip(shown);
+        let seen = all().filter(|(heading, _)| looked & heading.bit() != 0);
+        let left = row & !seen.fold(0, |seen, (_, row)| seen | row);
+        for ((_, shown), gain) in all().zip(&mut self.0) {
+            *gain = gain.saturating_add((left & shown).count_ones());
         }
     }
 

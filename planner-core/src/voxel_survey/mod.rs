@@ -339,8 +339,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.position
     }
 
-    /// Work of the last [`tick`](Self::tick): words and rows of voxels looked at, and 3 for
-    /// each ray. Some 160 instructions each on a Cortex-M4.
+    /// Work of the last [`tick`](Self::tick): words and rows of voxels looked at, 3 for each
+    /// ray, and 3 for each row in sight where the sensor does not show all round. Some 160
+    /// instructions each on a Cortex-M4.
     pub const fn work(&self) -> u32 {
         self.work
     }
@@ -548,8 +549,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Every later tick returns the same, until the robot hears of more, or
     /// [`resume`](Self::resume).
     ///
-    /// Cost: [`work`](Self::work) is at most 43,008, and a view that was begun before. A view
-    /// looks at eight octants in rows, and walks at most one ray for each voxel in range.
+    /// Cost: [`work`](Self::work) is at most 43,008, and a view that was begun before; of a
+    /// sensor that is turned, another view. A view looks at eight octants in rows, and walks at
+    /// most one ray for each voxel in range.
     pub fn tick(&mut self) -> Action<Voxel, Voxel> {
         self.work = 0;
         self.waiting = Maybe::Nothing;

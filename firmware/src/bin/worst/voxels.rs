@@ -1,4 +1,4 @@
-//! The calls of the planner among voxels, in a box of 40×40×16 of them.
+//! The calls of the planner among voxels, in boxes of 40×40×16 and 40×40×18 of them.
 
 use core::fmt::{self, Write as _};
 
@@ -7,14 +7,15 @@ use firmware::Stopwatch;
 use planner_core::radio::MAX_LEN;
 use planner_core::rng::Rng;
 use planner_core::tile::TileIndex;
-use planner_core::volume::{Voxel, VoxelPatch};
-use planner_core::voxel_survey::{Config, VoxelSurvey};
+use planner_core::volume::{Field, Voxel, VoxelPatch};
+use planner_core::voxel_survey::{Config, MAX_RANGE, VoxelSurvey};
 use planner_core::{Action, Extent, RobotId};
 use static_cell::ConstStaticCell;
 
 use crate::Most;
 
-const LEVELS: i16 = 16;
+/// As many as towns have.
+const LEVELS: u8 = 18;
 
 /// How far the robot sees, in voxels.
 const RANGE: u8 = 8;
@@ -28,11 +29,42 @@ const TICKS: usize = 24;
 /// Frames that the robot hears.
 const FRAMES: usize = 24;
 
-static ROBOT: ConstStaticCell<VoxelSurvey<5, 5, 16>> = ConstStaticCell::new(VoxelSurvey::vacant());
+static ROBOT: ConstStaticCell<Robot> = ConstStaticCell::new(Robot::vacant());
 static LOOK: ConstStaticCell<Look> = ConstStaticCell::new(Look {
     voxels: [(Voxel::new(0, 0, 0), false); SEEN],
     length: 0,
 });
+
+type Robot = VoxelSurvey<5, 5, { LEVELS as usize }>;
+
+/// A sensor, and the height of the box in which it is tried.
+struct Setup {
+    /// As in the names of what is measured.
+    name: &'static str,
+    range: u8,
+    field: Field,
+    levels: u8,
+}
+
+const SETUPS: [Setup; 6] = [
+    Setup::new("", RANGE, Field::ALL_ROUND, 16),
+    Setup::new("_18_levels", RANGE, Field::ALL_ROUND, LEVELS),
+    Setup::new("_camera", RANGE, Field::CAMERA, LEVELS),
+    Setup::new("_downward", RANGE, Field::DOWNWARD, LEVELS),
+    Setup::new("_lidar", RANGE, Field::LIDAR, LEVELS),
+    Setup::new("_range_12", MAX_RANGE, Field::ALL_ROUND, LEVELS),
+];
+
+impl Setup {
+    const fn new(name: &'static str, range: u8, field: Field, levels: u8) -> Self {
+        Self {
+            name,
+            range,
+            field,
+            levels,
+        }
+    }
+}
 
 /// What a look shows.
 struct Look {
@@ -160,43 +192,49 @@ struct Calls {
     work: u32,
 }
 
-/// Measures, and prints `name: value` lines.
+/// Measures, and prints `name: value` lines: all calls of the first setup, the ticks of all.
 pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
     let (robot, look) = (ROBOT.take(), LOOK.take());
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
-    let mut calls = Calls::default();
-    for place in Place::all() {
-        enter(robot, place);
-        decide(robot, stopwatch, place, look, &mut calls);
-        talk(robot, stopwatch, place, look, &mut calls);
+    for setup in &SETUPS {
+        let (mut calls, name) = (Calls::default(), setup.name);
+        for place in Place::all() {
+            enter(robot, setup, place);
+            decide(robot, stopwatch, place, look, &mut calls);
+            if name.is_empty() {
+                talk(robot, stopwatch, setup, place, look, &mut calls);
+            }
+        }
+        let of = [
+            ("tick", calls.tick),
+            ("observe", calls.observe),
+            ("transmit", calls.transmit),
+            ("receive", calls.receive),
+        ];
+        let measured = if name.is_empty() { of.len() } else { 1 };
+        for (call, most) in of.into_iter().take(measured) {
+            let instructions = most.instructions();
+            writeln!(out, "worst_voxel_survey{name}_{call}: {instructions}")?;
+            writeln!(out, "worst_voxel_survey{name}_{call}_stack: {}", most.stack)?;
+        }
+        writeln!(out, "worst_voxel_survey{name}_work: {}", calls.work)?;
     }
-    let of = [
-        ("observe", calls.observe),
-        ("tick", calls.tick),
-        ("transmit", calls.transmit),
-        ("receive", calls.receive),
-    ];
-    for (call, most) in of {
-        writeln!(out, "worst_voxel_survey_{call}: {}", most.instructions())?;
-        writeln!(out, "worst_voxel_survey_{call}_stack: {}", most.stack)?;
-    }
-    writeln!(out, "worst_voxel_survey_work: {}", calls.work)
+    Ok(())
 }
 
-type Robot = VoxelSurvey<5, 5, 16>;
-
-fn reset(robot: &mut Robot, id: RobotId) {
+fn reset(robot: &mut Robot, setup: &Setup, id: RobotId) {
     let config = Config {
-        range: RANGE,
+        range: setup.range,
+        field: setup.field,
         ..Config::new()
     };
-    let _ = robot.reset(config, id, Extent::new(40, 40), LEVELS as u8);
+    let _ = robot.reset(config, id, Extent::new(40, 40), setup.levels);
 }
 
 /// Sets up the robot in a place that it knows.
-fn enter(robot: &mut Robot, place: Place) {
-    reset(robot, RobotId(0));
-    for z in 0..LEVELS {
+fn enter(robot: &mut Robot, setup: &Setup, place: Place) {
+    reset(robot, setup, RobotId(0));
+    for z in 0..i16::from(setup.levels) {
         for (x, y) in (0..5).flat_map(|x| (0..5).map(move |y| (x, y))) {
             let tile = TileIndex::new(x, y);
             let (mut known, mut occupied) = (0, 0);
@@ -240,7 +278,14 @@ fn decide(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, c
 
 /// Looks around in a place that it does not know, sends what was seen, and lets the robot
 /// hear it when it knows nothing.
-fn talk(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, calls: &mut Calls) {
+fn talk(
+    robot: &mut Robot,
+    watch: &Stopwatch,
+    setup: &Setup,
+    place: Place,
+    look: &mut Look,
+    calls: &mut Calls,
+) {
     let mut frames = [(0, [0; MAX_LEN]); FRAMES];
     let mut free = frames.iter_mut();
     let eye = Voxel::new(20, 20, 8);
@@ -258,7 +303,7 @@ fn talk(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, cal
         }
     }
     // In the name of another.
-    reset(robot, RobotId(1));
+    reset(robot, setup, RobotId(1));
     for _ in 0..4 {
         calls.observe.of(watch, || robot.observe(eye, look.seen()));
         robot.tick();
@@ -269,7 +314,7 @@ fn talk(robot: &mut Robot, watch: &Stopwatch, place: Place, look: &mut Look, cal
             }
         }
     }
-    reset(robot, RobotId(0));
+    reset(robot, setup, RobotId(0));
     for (length, frame) in &frames {
         let frame = frame.get(..*length).unwrap_or_default();
         let _ = calls.receive.of(watch, || robot.receive(frame));

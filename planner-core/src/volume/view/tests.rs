@@ -65,7 +65,7 @@ proptest! {
         let mut count = 0;
         let ended = view.look(|tile, z| stops.word(tile, z), |tile, z| asked.word(tile, z), |row| {
             count += row.count() as usize;
-            seen.extend(row.voxels());
+            seen.extend(row.voxels(u32::MAX));
             ControlFlow::Continue(())
         });
         prop_assert!(ended.is_continue());

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use host_sim::record::Deed;
+use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::heights::run;
 use host_sim::run::voxels;
@@ -114,6 +115,10 @@ fn columns_and_senses_fail() {
         let trace = run(&terrain, &scenario).unwrap();
         assert_eq!(trace.safety, Default::default());
         let stop = trace.stops[0].expect("it stops");
+        let mut file = Vec::new();
+        trace.write(&mut file).unwrap();
+        let read = Trace::read(file.as_slice()).unwrap();
+        assert_eq!((&read.seen, &read.found), (&trace.seen, &trace.found));
         (stop, trace)
     };
     let span = |text: &str| -> CellSpan { text.parse().unwrap() };

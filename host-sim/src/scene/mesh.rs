@@ -67,14 +67,11 @@ mod tests {
             .fold(0.0, |most: f64, it| most.max(it.abs() - 0.5))
     }
 
-    /// The point of a triangle that is nearest to the cube by that measure, which is
-    /// convex: by sections between sections.
+    /// How near a triangle comes to the cube by that measure, which is convex in the shares
+    /// of two of its sides: by sections between sections.
     fn nearest([a, b, c]: [Point; 3]) -> f64 {
-        let between = |a: Point, b: Point, share: f64| {
-            [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]))
-        };
-        let least = |of: &dyn Fn(f64) -> f64| {
-            let (mut low, mut high) = (0.0, 1.0);
+        let least = |most: f64, of: &dyn Fn(f64) -> f64| {
+            let (mut low, mut high) = (0.0, most);
             for _ in 0..60 {
                 let (one, two) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
                 if of(one) <= of(two) {
@@ -85,9 +82,12 @@ mod tests {
             }
             of(low).min(of(high))
         };
-        least(&|one| {
-            let end = between(b, c, one);
-            least(&|two| outside(between(a, end, two)))
+        least(1.0, &|along| {
+            least(1.0 - along, &|aside| {
+                outside([0, 1, 2].map(|axis| {
+                    a[axis] + along * (b[axis] - a[axis]) + aside * (c[axis] - a[axis])
+                }))
+            })
         })
     }
 
@@ -104,6 +104,13 @@ mod tests {
                 prop_assert!(touches(&triangle, [0.0; 3], 0.5));
             }
         }
+    }
+
+    #[test]
+    fn a_corner_in_the_cube_is_found_beyond_one_outside() {
+        let line = [[0.0, -0.6, 0.0], [0.0, -2.4, 0.0], [0.0; 3]];
+        assert_eq!(nearest(line), 0.0);
+        assert!(touches(&line, [0.0; 3], 0.5));
     }
 
     #[test]

@@ -8,15 +8,16 @@
 mod chart;
 mod wave;
 
+use planner_core::RobotId;
 use planner_core::volume::Voxel;
 
 pub use chart::{Body, Chart};
 use wave::Wave;
 
-/// The first step to the nearest place that shows a frontier, and the number of places and
-/// lines of sight that were tried.
-pub fn closest(chart: &mut Chart, here: Voxel) -> (Option<Voxel>, u32) {
-    let mut wave = Wave::new(chart, here);
+/// The first step of robot `id` to the nearest place that shows a frontier, and the number of
+/// places and lines of sight that were tried.
+pub fn closest(chart: &mut Chart, id: RobotId, here: Voxel) -> (Option<Voxel>, u32) {
+    let mut wave = Wave::new(chart, here, id.0.into());
     let before = chart.lines();
     let mut places = 0;
     let mut found = None;
@@ -43,8 +44,9 @@ pub fn assign(chart: &mut Chart, robots: &[Voxel]) -> (Vec<Option<Voxel>>, u32) 
     let mut work = 0;
     let waves: Vec<Wave> = robots
         .iter()
-        .map(|&robot| {
-            let mut wave = Wave::new(chart, robot);
+        .enumerate()
+        .map(|(id, &robot)| {
+            let mut wave = Wave::new(chart, robot, id);
             while wave.next(chart).is_some() {
                 work += 1;
             }
@@ -163,11 +165,14 @@ mod tests {
     #[test]
     fn a_robot_flies_to_where_it_sees_a_frontier_and_no_farther() {
         let mut chart = tunnel(40, 0..20, 8);
-        assert_eq!(closest(&mut chart, at(4)).0, Some(at(5)));
+        assert_eq!(closest(&mut chart, RobotId(0), at(4)).0, Some(at(5)));
         // The frontier at 20 is in sight from 12 on.
-        assert_eq!(closest(&mut chart, at(11)).0, Some(at(12)));
-        assert_eq!(closest(&mut chart, at(12)).0, Some(at(12)));
-        assert_eq!(closest(&mut tunnel(20, 0..20, 8), at(4)).0, None);
+        assert_eq!(closest(&mut chart, RobotId(0), at(11)).0, Some(at(12)));
+        assert_eq!(closest(&mut chart, RobotId(0), at(12)).0, Some(at(12)));
+        assert_eq!(
+            closest(&mut tunnel(20, 0..20, 8), RobotId(0), at(4)).0,
+            None
+        );
     }
 
     #[test]
@@ -196,8 +201,8 @@ mod tests {
             chart.learn(&views[views.len() - 1]);
             let mut afresh = new();
             views.iter().for_each(|view| afresh.learn(view));
-            let to = closest(&mut chart, here).0;
-            assert_eq!(to, closest(&mut afresh, here).0);
+            let to = closest(&mut chart, RobotId(0), here).0;
+            assert_eq!(to, closest(&mut afresh, RobotId(0), here).0);
             let robots = [here, scene.start(1).unwrap()];
             let orders = assign(&mut chart, &robots).0;
             assert_eq!(orders, assign(&mut afresh, &robots).0);

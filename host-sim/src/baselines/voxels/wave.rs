@@ -12,10 +12,14 @@ pub(super) struct Wave {
     steps: Vec<Option<(u32, Voxel)>>,
     front: VecDeque<Voxel>,
     start: Voxel,
+    /// Which of the six directions comes first.
+    first: usize,
 }
 
 impl Wave {
-    pub(super) fn new(chart: &Chart, start: Voxel) -> Self {
+    /// Of ways of equal length, those of robot `id` begin in another direction than those of
+    /// the next: robots that stand together part.
+    pub(super) fn new(chart: &Chart, start: Voxel, id: usize) -> Self {
         let mut steps = vec![None; chart.size()];
         if let Some(index) = chart.index(start) {
             steps[index] = Some((0, start));
@@ -24,6 +28,7 @@ impl Wave {
             steps,
             front: VecDeque::from([start]),
             start,
+            first: id % 6,
         }
     }
 
@@ -31,7 +36,9 @@ impl Wave {
     pub(super) fn next(&mut self, chart: &Chart) -> Option<Voxel> {
         let at = self.front.pop_front()?;
         let (steps, _) = self.steps[chart.index(at)?]?;
-        for beside in at.beside() {
+        let mut besides = at.beside();
+        besides.rotate_left(self.first);
+        for beside in besides {
             if let Some(index) = chart.index(beside)
                 && self.steps[index].is_none()
                 && chart.is_pose(beside)

@@ -16,6 +16,7 @@ const PATIENCE: u32 = 512;
 /// place that it can reach shows a frontier: so it ends for the same reasons.
 pub(super) struct Follower {
     inner: Box<dyn Pilot>,
+    id: RobotId,
     /// What it knows, for the closest frontier.
     chart: Chart,
     /// What the centre says, where there is one: the next place, and the work of finding it.
@@ -28,10 +29,11 @@ pub(super) struct Follower {
 }
 
 impl Follower {
-    pub(super) fn new(inner: Box<dyn Pilot>, body: Body) -> Self {
+    pub(super) fn new(inner: Box<dyn Pilot>, id: RobotId, body: Body) -> Self {
         let chart = Chart::new(inner.extent(), inner.levels(), body);
         Self {
             inner,
+            id,
             chart,
             order: None,
             known: 0,
@@ -56,7 +58,7 @@ impl Pilot for Follower {
             _ if self.idle > PATIENCE => (None, 0),
             Some(order) => order,
             None if self.exhausted == Some(known) => (None, 0),
-            None => closest(&mut self.chart, here),
+            None => closest(&mut self.chart, self.id, here),
         };
         self.work = work;
         if self.order.is_none() && to.is_none() {

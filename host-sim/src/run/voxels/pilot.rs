@@ -171,7 +171,7 @@ pub(super) fn pilot(
             let Config {
                 range, clearance, ..
             } = config;
-            Box::new(Follower::new(pilot, Body { range, clearance }))
+            Box::new(Follower::new(pilot, id, Body { range, clearance }))
         }
     })
 }

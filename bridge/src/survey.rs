@@ -201,8 +201,9 @@ fn hash(patches: impl Iterator<Item = Patch>) -> u32 {
 
 pub(crate) const SEED: u64 = 0xcbf2_9ce4_8422_2325;
 
+/// Turned first, so that the highest bits of a word reach all others by the words after it.
 pub(crate) const fn eat(hash: u64, word: u64) -> u64 {
-    (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3)
+    (hash.rotate_left(23) ^ word).wrapping_mul(0x517c_c1b7_2722_0a95)
 }
 
 pub(crate) const fn folded(hash: u64) -> u32 {

@@ -411,7 +411,7 @@ mod tests {
              --corrupt 0.125 --seed 5 --preset rangers --max-ticks 900 --forge 2:goal --partition 5-20:2 \
              --kill 1@40 --late 3@12 --restart 0@60 --resume 2@90 --close 4,5@9-20 --shut 5,5@3-8 \
              --blind 6,7 --sensor-fails 1@30 --pose-lost 0@5-9 --come-home --energy 70 \
-             --keep-out 1,2:3,4 --keep-out 5,5:7,5:5,7 --only 0,0:9,9 \
+             --keep-out 1,2:3,4 --keep-out 5,5:7,5:5,7 --only 0,0:9,9 --wind 0.5 \
              --false-walls 0.01 --false-frees 0.02 --error-kind far --misplaced 0.03 --drift 200 --people 2 --doors 6 --see-robots \
              --looks 3"
         ));

@@ -259,5 +259,6 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         all_stopped: false,
         stops: vec![None; robots],
         violations: 0,
+        contacts: 0,
     }
 }

@@ -9,7 +9,7 @@ use host_sim::run::heights::run;
 use host_sim::run::voxels;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::voxels::{Planner as VoxelPlanner, Scenario as VoxelScenario};
-use host_sim::scenario::{CellSpan, Event, Faults, MediumKind, Mission};
+use host_sim::scenario::{CellSpan, Event, Faults, MediumKind, Mission, Wind};
 use host_sim::scene::octree::OcTree;
 use host_sim::scene::{self, Scene};
 use host_sim::summary::heights::Summary;
@@ -155,6 +155,29 @@ fn columns_and_senses_fail() {
             .iter()
             .filter(|record| (6..30).contains(&record.tick));
         assert!(lost.into_iter().all(|record| record.deed == Deed::Hovered));
+    }
+}
+
+/// In the wind surveys become complete, robots come home, and what they order is safe.
+#[test]
+fn wind_keeps_robots_from_nothing() {
+    for (seed, planner) in (0..).zip(ALL) {
+        for (robots, deviation) in [(1, 0.2), (4, 0.2)] {
+            let terrain = match seed % 2 {
+                0 => Terrain::gaussian(seed, 32),
+                _ => Terrain::urban(seed, 32),
+            };
+            let mut scenario = Scenario::new(planner, robots, seed);
+            scenario.conditions.wind = Wind { deviation };
+            scenario.conditions.mission.come_home = true;
+            let trace = run(&terrain, &scenario).unwrap();
+            let case = format!("{planner} {robots} {deviation}: {:?}", trace.stops);
+            assert_eq!(trace.safety, Default::default(), "{case}");
+            assert!(trace.complete() && trace.all_stopped, "{case}");
+            let summary = Summary::new(&trace);
+            assert!(summary.robots.iter().all(|robot| robot.is_home), "{case}");
+            assert_eq!(trace.digest(), run(&terrain, &scenario).unwrap().digest());
+        }
     }
 }
 

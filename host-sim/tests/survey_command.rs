@@ -506,7 +506,6 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             "--scene rooms.bt --radius 0.1 --clearance 1",
             ["--radius", "--clearance"],
         ),
-        ("--wind 0.2", ["--wind", "does not apply over a terrain"]),
         ("--fov 90x60", ["--fov", "among voxels"]),
         ("--scene rooms.bt --fov 90x60", ["--fov", "--sensor camera"]),
         (

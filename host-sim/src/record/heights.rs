@@ -65,9 +65,11 @@ impl Safety {
         to: Point,
     ) {
         let least = clearance(from, to, |cell| terrain.height(cell));
+        // Whom the wind has pushed too low may rise, and too high, sink.
+        let is_rise = (to.x, to.y) == (from.x, from.y) && to.z > from.z;
         self.altitude_violations += u32::from(
-            to.z > limits.ceiling + TOLERANCE
-                || least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
+            to.z > limits.ceiling.max(from.z) + TOLERANCE
+                || !is_rise && least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
         );
         self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
         self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
@@ -81,6 +83,20 @@ impl Safety {
                 self.separation_violations += u32::from(near);
             }
         }
+    }
+
+    /// The same in wind, where robots are where nobody sent them: how many are on the ground or
+    /// too near to another.
+    pub(crate) fn contacts(terrain: &Terrain, limits: &Limits, alive: &[Point]) -> u32 {
+        let is_near = |a: &Point| {
+            let others = alive.iter().filter(|b| !std::ptr::eq(a, *b));
+            others.fold(f32::INFINITY, |least, b| least.min(a.distance(*b))) < limits.separation
+        };
+        let is_down = |at: &Point| {
+            let ground = terrain.height(at.cell());
+            ground.is_some_and(|ground| at.z <= ground.cells())
+        };
+        alive.iter().filter(|at| is_down(at) || is_near(at)).count() as u32
     }
 
     /// All of them.
@@ -115,8 +131,11 @@ pub struct Trace {
     pub all_stopped: bool,
     /// Why each robot had stopped when it last decided, if it had.
     pub stops: Vec<Option<Stop>>,
-    /// What should never happen.
+    /// What should never happen. A trace does not say where a robot flew that the wind pushed:
+    /// then none is counted when it is read.
     pub safety: Safety,
+    /// Steps of robots that the wind ended on the ground or too near to another.
+    pub contacts: u32,
     /// Host time of each decision; not part of the digest, and empty in the browser.
     pub decision_nanoseconds: Vec<u64>,
 }
@@ -135,6 +154,7 @@ impl Trace {
             found: Vec::new(),
             all_stopped: false,
             safety: Safety::default(),
+            contacts: 0,
             decision_nanoseconds: Vec::new(),
         }
     }

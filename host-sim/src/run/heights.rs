@@ -8,7 +8,7 @@ use bridge::SurveyorConfig;
 use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
 use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
-use planner_core::surface::{Columns, Surface};
+use planner_core::surface::{Columns, Height, Surface, clearance};
 use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
@@ -16,7 +16,7 @@ use crate::baselines::surveys::{Follower, Guide, Order, Rounds, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_point, surface_frame};
 use crate::record::Deed;
-use crate::record::heights::{Record, Trace};
+use crate::record::heights::{Record, Safety, Trace};
 use crate::robot::Sent;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::scenario::{Conditions, Event, Faults, MediumKind, ScenarioError};
@@ -24,6 +24,9 @@ use crate::terrain::{Terrain, look};
 
 /// Takes the chance of sleep apart from that of the air: "sleep".
 const SLEEP: u64 = 0x73_6c65_6570;
+
+/// How near to the edge of the map the wind blows robots, in cells.
+const EDGE: f32 = 0.01;
 
 /// The pose of a robot that does not know where it is.
 const NOWHERE: Point = Point::new(f32::NAN, f32::NAN, f32::NAN);
@@ -442,6 +445,7 @@ impl<const T: usize> Simulation<T> {
             Action::Wait => Deed::Hovered,
             Action::Stop(reason) => Deed::Stopped(reason.reason()),
         };
+        let mut motion = None;
         if let Action::Move(to) = action {
             if self.collides(i, to) || self.is_closed(from, to) {
                 deed = Deed::Refused;
@@ -451,10 +455,15 @@ impl<const T: usize> Simulation<T> {
                     .check_flight(&self.terrain, &self.scenario.limits, from, to);
                 self.robots[i].at = to;
             }
-            let motion = match deed {
+            motion = Some(match deed {
                 Deed::Refused => Motion::Blocked,
                 _ => Motion::Moved,
-            };
+            });
+        }
+        if !matches!(action, Action::Stop(_)) {
+            self.blow(i);
+        }
+        if let Some(motion) = motion {
             let at = self.robots[i].at;
             self.robots[i].pilot.get_mut().report(motion, at);
         }
@@ -488,6 +497,32 @@ impl<const T: usize> Simulation<T> {
         });
     }
 
+    /// The wind pushes robot `i` from where it has flown to, or hovers: along level ground and
+    /// up and down, but not off the map, nor through the ground.
+    fn blow(&mut self, i: usize) {
+        let conditions = &self.scenario.conditions;
+        if conditions.wind.is_none() {
+            return;
+        }
+        let gust = (conditions.wind).gust(conditions.seed, self.now, self.robots[i].id);
+        let [x, y, z] = gust.map(|off| off as f32);
+        let Extent { width, height } = self.terrain.extent();
+        let inside = |at: f32, side: u16| at.clamp(EDGE, f32::from(side) - EDGE);
+        let from = self.robots[i].at;
+        let mut at = Point::new(
+            inside(from.x + x, width),
+            inside(from.y + y, height),
+            from.z + z,
+        );
+        let ground = |cell| self.terrain.height(cell);
+        if clearance(from, at, ground).is_none_or(|least| least < 0.0) {
+            (at.x, at.y) = (from.x, from.y);
+        }
+        let least = ground(at.cell()).map_or(0.0, Height::cells);
+        at.z = at.z.max(least);
+        self.robots[i].at = at;
+    }
+
     /// The flight controller's own sense of nearness: without radio a planner cannot
     /// know where the others are, and such a flight is refused.
     fn collides(&self, i: usize, to: Point) -> bool {
@@ -512,9 +547,11 @@ impl<const T: usize> Simulation<T> {
             .filter(|robot| robot.alive)
             .map(|robot| robot.at)
             .collect();
-        self.trace
-            .safety
-            .check_separation(&self.scenario.limits, &alive);
+        let limits = &self.scenario.limits;
+        match self.scenario.conditions.wind.is_none() {
+            true => self.trace.safety.check_separation(limits, &alive),
+            false => self.trace.contacts += Safety::contacts(&self.terrain, limits, &alive),
+        }
     }
 }
 

@@ -17,13 +17,14 @@ const HIGHEST: f32 = 500.0;
 const APART: usize = 2;
 
 /// Options that are of grids, too.
-const OF_GRIDS: [&str; 6] = [
+const OF_GRIDS: [&str; 7] = [
     "come-home",
     "energy",
     "close",
     "blind",
     "sensor-fails",
     "pose-lost",
+    "wind",
 ];
 
 /// How the robots decide.

@@ -26,6 +26,8 @@ pub struct Summary {
     pub violations: u32,
     /// The same by kind.
     pub safety: Safety,
+    /// Steps that the wind ended on the ground or too near to another robot.
+    pub contacts: u32,
     /// How the robots decided.
     pub planner: Planner,
     /// Sensor range in cells.
@@ -109,6 +111,7 @@ impl Summary {
             distance: robots.iter().map(|robot| robot.distance).sum(),
             violations,
             safety: trace.safety,
+            contacts: trace.contacts,
             planner: scenario.planner,
             range: scenario.limits.range,
             step: scenario.limits.step,

@@ -4,9 +4,10 @@ use host_sim::chip::{ChipError, Machine, Swarm};
 use host_sim::measured::{Call, Measured};
 use host_sim::record::heights::Trace;
 use host_sim::run::heights;
-use host_sim::scenario::Event;
 use host_sim::scenario::heights::{Planner, Scenario};
+use host_sim::scenario::{Event, Mission};
 use host_sim::terrain::Terrain;
+use planner_core::Reason;
 
 use crate::{Largest, image};
 
@@ -69,6 +70,26 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
     }
     largest.print();
     println!("explorations: {explorations}");
+}
+
+/// A mission is part of what a chip is set up with.
+#[test]
+#[ignore = "needs QEMU and the image: cargo xtask test --only loop"]
+fn flying_robots_come_home_on_the_chip_as_on_the_host() {
+    for planner in [Planner::Fcao, Planner::CoordinatedSurvey] {
+        let terrain = Terrain::urban(2, 32);
+        let mut scenario = Scenario::new(planner, 2, 1);
+        scenario.conditions.mission = Mission {
+            come_home: true,
+            energy: 60,
+        };
+        scenario.conditions.faults.resumes = vec![Event::from((0, 90))];
+        let (there, _) = on_chips(&terrain, &scenario, Machine::Netduinoplus2)
+            .unwrap_or_else(|error| panic!("{error}"));
+        let here = heights::run(&terrain, &scenario).unwrap();
+        assert_eq!(here.records, there.records, "{planner}");
+        assert_eq!(here.stops[1].map(|stop| stop.reason()), Some(Reason::Home));
+    }
 }
 
 #[test]

@@ -132,7 +132,8 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
         false
     }
 
-    /// Says how the last [`Action::Move`] went, and where the robot is now.
+    /// Says how the last [`Action::Move`] went, and where the robot is now. One that the wind
+    /// pushed aside has [moved](Motion::Moved): only a flight that is not made is refused.
     fn report(&mut self, motion: Motion, at: Point);
 
     /// Writes the next frame for the radio and returns its length, or `None` while the

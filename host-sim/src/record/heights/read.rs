@@ -6,7 +6,7 @@ use std::io::BufRead;
 use planner_core::surface::Height;
 use planner_core::{Cell, Extent, Point, Reason, RobotId};
 
-use super::{Ground, Header, Heights, Record, Trace};
+use super::{Ground, Header, Heights, Record, Safety, Trace};
 use crate::record::{self, Deed, Objection, Order, TraceError, wrong};
 use crate::scenario::heights::Scenario;
 use crate::terrain::{LARGEST, Terrain, look};
@@ -17,6 +17,9 @@ const MOST_STEPS: u32 = 10_000_000;
 
 /// Rounding that a position may be beyond the box by.
 const TOLERANCE: f32 = 1e-3;
+
+/// How far wind may have lifted a robot above the ceiling, in cells: more than it ever does.
+const BLOWN: f32 = 100.0;
 
 impl Trace {
     /// Reads a trace, and checks that it is whole and that each record can be: robots
@@ -118,14 +121,22 @@ impl Replay {
     fn is_in_box(&self, at: Point) -> bool {
         let Extent { width, height } = self.trace.extent;
         let within = |v: f32, end: f32| (-TOLERANCE..=end + TOLERANCE).contains(&v);
-        within(at.x, width.into())
-            && within(at.y, height.into())
-            && within(at.z, self.trace.scenario.limits.ceiling)
+        within(at.x, width.into()) && within(at.y, height.into()) && within(at.z, self.ceiling())
+    }
+
+    /// Where no robot is above.
+    fn ceiling(&self) -> f32 {
+        let scenario = &self.trace.scenario;
+        let blown = match scenario.conditions.wind.is_none() {
+            true => 0.0,
+            false => BLOWN,
+        };
+        scenario.limits.ceiling + blown
     }
 
     fn the_box(&self) -> String {
         let Extent { width, height } = self.trace.extent;
-        let ceiling = self.trace.scenario.limits.ceiling;
+        let ceiling = self.ceiling();
         format!("the box from 0,0,0 to {width},{height},{ceiling}")
     }
 
@@ -167,11 +178,12 @@ impl Replay {
             self.trace.seen.push(self.trace.found.len() as u32);
         }
         self.look(tick, records.iter().map(|it| usize::from(it.robot)));
+        let is_calm = self.trace.scenario.conditions.wind.is_none();
         for record in records {
             let robot = usize::from(record.robot);
             self.is_there[robot] = true;
             let from = std::mem::replace(&mut self.at[robot], record.at);
-            if record.deed == Deed::Flew {
+            if is_calm && record.deed == Deed::Flew {
                 let Trace {
                     terrain,
                     scenario,
@@ -184,9 +196,16 @@ impl Replay {
         }
         let alive: Vec<_> = self.alive(tick).map(|robot| self.at[robot]).collect();
         let Trace {
-            scenario, safety, ..
+            terrain,
+            scenario,
+            safety,
+            contacts,
+            ..
         } = &mut self.trace;
-        safety.check_separation(&scenario.limits, &alive);
+        match is_calm {
+            true => safety.check_separation(&scenario.limits, &alive),
+            false => *contacts += Safety::contacts(terrain, &scenario.limits, &alive),
+        }
     }
 
     /// The look after the last flight.
@@ -329,6 +348,24 @@ mod tests {
             assert_eq!(read.safety, trace.safety);
             assert_eq!(read.all_stopped, trace.all_stopped, "{planner}");
         }
+    }
+
+    #[test]
+    fn a_trace_in_wind_survives_its_file() {
+        let mut scenario = Scenario::new(Planner::CoordinatedSurvey, 3, 5);
+        // So that robots are pushed above the ceiling and onto the ground.
+        scenario.limits.ceiling = 4.0;
+        scenario.limits.min_altitude = 1.0;
+        scenario.conditions.wind.deviation = 0.8;
+        scenario.conditions.max_ticks = 400;
+        let plain = Terrain::from_fn(Extent::new(16, 16), |_| Height(4));
+        let trace = run(&plain, &scenario).unwrap();
+        assert!(trace.contacts > 0);
+        let read = Trace::read(text(&trace).as_bytes()).unwrap();
+        assert_eq!(text(&read), text(&trace));
+        assert_eq!(read.found, trace.found);
+        assert_eq!(read.contacts, trace.contacts);
+        assert_eq!(read.safety, Safety::default());
     }
 
     #[test]

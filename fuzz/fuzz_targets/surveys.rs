@@ -202,6 +202,7 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
         all_stopped: false,
         stops: vec![None; robots],
         safety: Default::default(),
+        contacts: 0,
         decision_nanoseconds: Vec::new(),
     }
 }

@@ -353,10 +353,10 @@ mod tests {
     #[test]
     fn a_trace_in_wind_survives_its_file() {
         let mut scenario = Scenario::new(Planner::CoordinatedSurvey, 3, 5);
-        // So that robots are pushed above the ceiling and onto the ground.
+        // So that robots are pushed above the ceiling, and near to each other.
         scenario.limits.ceiling = 4.0;
-        scenario.limits.min_altitude = 1.0;
-        scenario.conditions.wind.deviation = 0.8;
+        scenario.limits.separation = 2.0;
+        scenario.conditions.wind.deviation = 1.0;
         scenario.conditions.max_ticks = 400;
         let plain = Terrain::from_fn(Extent::new(16, 16), |_| Height(4));
         let trace = run(&plain, &scenario).unwrap();

@@ -337,8 +337,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                     Found::Searching
                 };
             }
-            // What was learnt meanwhile may have opened a way.
-            return if known == self.volume.known_voxels() {
+            // What was learnt meanwhile may have opened a way, and wind may have taken the robot
+            // to where the wave has not come.
+            let is_reached = self.far.distance(self.position).is_some();
+            return if known == self.volume.known_voxels() && is_reached {
                 Found::Nothing
             } else {
                 Found::Searching

@@ -90,19 +90,26 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// Notes the voxels that the look from here should have shown and did not: unknown
-    /// ones beside a free one, in the field, in sight over free ones alone.
+    /// ones beside a free one, in the field, in sight over free ones alone. Of a look that only
+    /// `stands_for` one in that heading, all that it may have shown.
     ///
     /// Cost: 28 words for every tile of a level within range, and a view if any is new.
-    pub(super) fn note_missed(&mut self, heading: Heading) {
+    pub(super) fn note_missed(&mut self, heading: Heading, stands_for: bool) {
         let (volume, missed) = (&self.volume, &mut self.missed);
         let (here, field) = (self.position, self.field);
-        let unknown = |tile, z| volume.unknown_beside_free(tile, z);
+        let unknown = |tile, z| match stands_for {
+            true => volume.unknown(tile, z),
+            false => volume.unknown_beside_free(tile, z),
+        };
         let mut view = View::new(here, self.range);
         if !view.aim(|tile, z| unknown(tile, z) & !missed.word(tile, z)) {
             return;
         }
         let _ = view.look(
-            |tile, z| volume.bad(tile, z),
+            |tile, z| match stands_for {
+                true => volume.occupied(tile, z),
+                false => volume.bad(tile, z),
+            },
             unknown,
             |row| {
                 for voxel in row.voxels(field.row(heading, row.south, row.up)) {

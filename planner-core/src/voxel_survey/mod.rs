@@ -420,8 +420,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.stopped = false;
         }
         self.silent = 0;
-        let heading = self.look_towards(heading);
-        self.note_missed(heading);
+        let stands_for = self.look_towards(heading);
+        self.note_missed(stands_for, stands_for != heading);
     }
 
     /// Goes on after a stop with the map at hand: what was given up is tried again.

@@ -63,6 +63,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let frontiers = self.volume.frontiers();
         self.end(match missed {
             Some(at) => self.unseen(at),
+            // What could be seen from poses about it nobody knows.
+            None if self.is_adrift => Stop::Blocked {
+                frontiers,
+                at: self.position,
+            },
             None if frontiers == 0 => Stop::Complete,
             None if self.sender.hearsay.cells > 0 => Stop::Enclosed { frontiers },
             None => Stop::OutOfReach { frontiers },

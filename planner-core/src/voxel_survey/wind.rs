@@ -11,7 +11,7 @@ use crate::volume::Voxel;
 const PUSHES: u16 = 4096;
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
-    /// Gives up, or flies back to a pose; `None`: the robot is at one, or beside.
+    /// Gives up, or flies back to a pose; `None`: the robot is at one, or none is known near by.
     pub(super) fn mind_wind(&mut self) -> Option<Action<Voxel, Voxel>> {
         if !self.is_adrift {
             return None;
@@ -28,14 +28,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let here = self.position;
         if self.volume.is_pose(here, self.clearance) {
             self.is_adrift = false;
-            return None;
-        }
-        let is_pose = |at: &Voxel| self.volume.is_pose(*at, self.clearance);
-        if here
-            .beside()
-            .iter()
-            .any(|at| is_pose(at) && !self.closed.get(*at))
-        {
             return None;
         }
         self.fly_to_a_pose().map(Action::Move)

@@ -18,8 +18,8 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     /// In wind, in up to two steps of five: the survey ends, and what can be seen from all that
-    /// can be reached from where it ends is seen. A robot that comes home does so, if a way leads
-    /// there.
+    /// can be reached from where it ends is seen, or it ends where its body has no room and says
+    /// so. A robot that comes home does so, if a way leads there.
     #[test]
     fn all_that_can_be_seen_is_seen_in_wind(
         (scattered, slabs) in walls(),
@@ -50,6 +50,7 @@ proptest! {
                     let is_cut_off = !reached(&walls, at, clearance).contains(&START);
                     match stop {
                         Stop::NoWay { .. } => prop_assert!(come_home && is_cut_off, "{stop}"),
+                        Stop::Blocked { .. } => prop_assert!(!is_clear(&walls, clearance, at)),
                         _ => {
                             prop_assert!(stop.is_complete(), "{stop} at {at}");
                             prop_assert!(!come_home || at == START);

@@ -1,26 +1,28 @@
 //! Runs over a terrain of heights: sense, share, decide in turn, fly; until every living robot has stopped.
 
+mod pilot;
+
 use std::sync::Arc;
 #[cfg(not(target_arch = "wasm32"))]
 use std::time::Instant;
 
-use bridge::SurveyorConfig;
-use planner_core::coordinated_survey::{self, Choice, CoordinatedSurvey};
-use planner_core::fcao::{self, Fcao};
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
 use planner_core::surface::{Columns, Height, Surface, clearance};
-use planner_core::survey::{Limits, SetupError, Surveyor};
+use planner_core::survey::SetupError;
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
-use crate::baselines::surveys::{Follower, Guide, Order, Rounds, assign};
+use crate::baselines::surveys::{Order, Rounds, assign};
 use crate::dice::Dice;
 use crate::medium::{Claim, Radio, Station, any_point, surface_frame};
 use crate::record::Deed;
 use crate::record::heights::{Record, Safety, Trace};
 use crate::robot::Sent;
+use crate::run::Here;
 use crate::scenario::heights::{Planner, Scenario};
 use crate::scenario::{Conditions, Event, Faults, MediumKind, ScenarioError};
 use crate::terrain::{Terrain, look};
+pub use pilot::Host;
+use pilot::{Pilot, pilot};
 
 /// Takes the chance of sleep apart from that of the air: "sleep".
 const SLEEP: u64 = 0x73_6c65_6570;
@@ -30,46 +32,6 @@ const EDGE: f32 = 0.01;
 
 /// The pose of a robot that does not know where it is.
 const NOWHERE: Point = Point::new(f32::NAN, f32::NAN, f32::NAN);
-
-/// Where the planners of a survey are.
-pub trait Host: Clone + 'static {
-    /// The planner of a robot.
-    fn surveyor<const T: usize>(
-        &self,
-        extent: Extent,
-        limits: Limits,
-        planner: SurveyorConfig,
-        id: RobotId,
-    ) -> Result<Box<dyn Surveyor<T, T>>, SetupError>;
-
-    /// Whether the run has to end because a planner is lost.
-    fn has_failed(&self) -> bool;
-}
-
-/// In this process.
-#[derive(Clone, Copy, Debug)]
-pub struct Here;
-
-impl Host for Here {
-    fn surveyor<const T: usize>(
-        &self,
-        extent: Extent,
-        _: Limits,
-        planner: SurveyorConfig,
-        id: RobotId,
-    ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
-        Ok(match planner {
-            SurveyorConfig::Fcao(config) => Box::new(Fcao::<T, T>::new(config, id, extent)?),
-            SurveyorConfig::Coordinated(config) => {
-                Box::new(CoordinatedSurvey::new(config, id, extent)?)
-            }
-        })
-    }
-
-    fn has_failed(&self) -> bool {
-        false
-    }
-}
 
 /// Runs `scenario` over `terrain`.
 ///
@@ -126,27 +88,6 @@ pub trait Stepping {
     fn trace(&self) -> &Trace;
     /// What happened.
     fn finish(self: Box<Self>) -> Trace;
-}
-
-enum Pilot<const T: usize> {
-    Follower(Box<Follower<T, T>>),
-    Other(Box<dyn Surveyor<T, T>>),
-}
-
-impl<const T: usize> Pilot<T> {
-    fn get(&self) -> &dyn Surveyor<T, T> {
-        match self {
-            Self::Follower(follower) => follower.as_ref(),
-            Self::Other(other) => other.as_ref(),
-        }
-    }
-
-    fn get_mut(&mut self) -> &mut dyn Surveyor<T, T> {
-        match self {
-            Self::Follower(follower) => follower.as_mut(),
-            Self::Other(other) => other.as_mut(),
-        }
-    }
 }
 
 struct Robot<const T: usize> {
@@ -553,51 +494,4 @@ impl<const T: usize> Simulation<T> {
             false => self.trace.contacts += Safety::contacts(&self.terrain, limits, &alive),
         }
     }
-}
-
-fn pilot<const T: usize>(
-    host: &impl Host,
-    extent: Extent,
-    scenario: &Scenario,
-    id: RobotId,
-) -> Result<Pilot<T>, SetupError> {
-    let limits = scenario.limits;
-    let link = scenario.conditions.link();
-    let mission = scenario.conditions.mission.of_surveys();
-    let follower = |guide| -> Result<Pilot<T>, SetupError> {
-        let follower = Follower::new(extent, limits, link, id, guide)?;
-        Ok(Pilot::Follower(Box::new(follower.on(mission))))
-    };
-    Ok(match scenario.planner {
-        Planner::ClosestFrontier => follower(Guide::Closest)?,
-        Planner::ClosestUntilReached => follower(Guide::ClosestUntilReached)?,
-        Planner::Greedy | Planner::GreedyUnique | Planner::GreedyInOrder => {
-            follower(Guide::Centre)?
-        }
-        Planner::CoordinatedSurvey | Planner::CoordinatedCubic => {
-            let choice = if scenario.planner == Planner::CoordinatedCubic {
-                Choice::Cubic
-            } else {
-                Choice::Map
-            };
-            let config = coordinated_survey::Config {
-                limits,
-                link,
-                choice,
-                mission,
-                seed: scenario.conditions.seed,
-            };
-            let planner = SurveyorConfig::Coordinated(config);
-            Pilot::Other(host.surveyor(extent, limits, planner, id)?)
-        }
-        Planner::Fcao => {
-            let config = fcao::Config {
-                link,
-                mission,
-                ..fcao::Config::new(limits, scenario.conditions.seed)
-            };
-            let planner = SurveyorConfig::Fcao(config);
-            Pilot::Other(host.surveyor(extent, limits, planner, id)?)
-        }
-    })
 }

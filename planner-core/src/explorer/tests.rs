@@ -5,7 +5,10 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::tile::every_tile;
+use crate::planner::{Contact, Inspect, LongSight, Planner};
+use crate::robot::{Activity, Motion, Status};
+use crate::sight::Sighting;
+use crate::tile::{TileIndex, TileSet, every_tile};
 
 mod limits;
 pub(super) mod scene;

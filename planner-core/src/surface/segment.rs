@@ -120,7 +120,8 @@ pub fn in_sight(eye: Point, target: Point, mut height: impl FnMut(Cell) -> Optio
 }
 
 /// The least height over ground along the straight line between two points, or
-/// `None` if it crosses ground that `height` does not know.
+/// `None` if it crosses ground that `height` does not know. The same from `to` to `from`, bit
+/// for bit.
 ///
 /// Cost: one call of `height` for each column crossed.
 pub fn clearance(
@@ -128,8 +129,10 @@ pub fn clearance(
     to: Point,
     mut height: impl FnMut(Cell) -> Option<Height>,
 ) -> Option<f32> {
+    let is_forward = (from.x, from.y, from.z) <= (to.x, to.y, to.z);
+    let (first, last) = if is_forward { (from, to) } else { (to, from) };
     let mut least = f32::INFINITY;
-    for crossing in Columns::new(from, to) {
+    for crossing in Columns::new(first, last) {
         let low = crossing.entered.min(crossing.left);
         least = least.min(low - height(crossing.cell)?.cells());
     }
@@ -178,6 +181,22 @@ mod tests {
     }
 
     proptest! {
+        /// Whoever flew somewhere may fly back: at corners of columns, too.
+        #[test]
+        fn clearance_is_the_same_both_ways(
+            (from, to) in prop_oneof![
+                (point(), point()),
+                prop::array::uniform6(0u8..40).prop_map(|of| {
+                    let [a, b, c, d, e, f] = of.map(|it| f32::from(it) * 0.5);
+                    (Point::new(a, b, c), Point::new(d, e, f))
+                }),
+            ],
+            heights in prop::collection::vec(prop::option::weighted(0.98, 0u8..40), 441),
+        ) {
+            let ground = |cell: Cell| heights.get(cell.y as usize * 21 + cell.x as usize)?.map(Height);
+            prop_assert_eq!(clearance(from, to, ground), clearance(to, from, ground));
+        }
+
         /// A sensor that looks down misses nothing of a surface: no column whose top is higher
         /// than the eye is in sight.
         #[test]

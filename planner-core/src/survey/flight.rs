@@ -42,7 +42,7 @@ impl<const TW: usize, const TH: usize> Sky<'_, TW, TH> {
     #[inline(never)] // there are many calls
     pub(super) fn is_way(&self, from: Point, to: Point) -> bool {
         let length = math::length(to.x - from.x, to.y - from.y);
-        if from.distance(to) <= self.limits.step || length < SAME {
+        if from.distance(to) <= self.limits.step + 0.5 * SAME || length < SAME {
             return self.is_open(from, to);
         }
         let (east, south) = ((to.x - from.x) / length, (to.y - from.y) / length);

@@ -75,8 +75,8 @@ fn voxels(bytes: &[u8], extent: Extent, buffer: &mut [u8; MAX_LEN]) -> Option<us
     }
     for patch in &frame.patches {
         assert!(patch.z < LEVELS);
-        assert_inside(patch.known, extent, |bit| patch.tile.cell(bit));
-        assert_eq!(patch.occupied & !patch.known, 0);
+        assert!(!patch.is_empty());
+        assert_inside(patch.known | patch.occupied, extent, |bit| patch.tile.cell(bit));
     }
     Some(frame.encode(None, buffer))
 }

@@ -83,6 +83,7 @@ fn fly_among_voxels() {
         range: 4,
         clearance: 2,
         field: Field::CAMERA,
+        sensor: black_box(voxel_survey::Sensor::Errs),
         come_home: true,
         energy: 100,
         link: any::link(),

@@ -41,6 +41,12 @@ pub struct VoxelTrace {
     pub violations: u32,
     /// Steps that the wind ended beside or in something.
     pub contacts: u32,
+    /// Steps that ended at an obstacle that a look may have hidden. A trace does not say it: 0
+    /// when it is read, and so are the false claims.
+    pub bumps: u32,
+    /// Living robots that say in the end that all that they could see is known, while a voxel
+    /// that can be seen is not known to them.
+    pub false_claims: u32,
 }
 
 impl VoxelTrace {

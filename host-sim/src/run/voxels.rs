@@ -1,6 +1,7 @@
 //! Runs in a scene of voxels: sense, share, decide in turn, fly; until every living robot
 //! has stopped.
 
+mod errors;
 mod follower;
 mod pilot;
 
@@ -11,10 +12,10 @@ use planner_core::radio::{Key, MAX_LEN, VoxelFrame};
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Content, Heading, Voxel, VoxelPatch, in_sight};
 use planner_core::voxel_survey::Config;
-use planner_core::{Action, ExtentError, RobotId};
+use planner_core::{Action, ExtentError, RobotId, Stop};
 
 use crate::baselines::voxels::{Body, Chart, assign};
-use crate::dice::Dice;
+use crate::dice::{Dice, Lot};
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
 use crate::record::voxels::{Record, VoxelTrace};
 use crate::record::{Deed, Nothing};
@@ -23,6 +24,7 @@ use crate::run::Here;
 use crate::scenario::voxels::{Planner, Scenario};
 use crate::scenario::{Faults, MediumKind, ScenarioError};
 use crate::scene::{Marks, Scene, look_towards, visible};
+use errors::told;
 use pilot::pilot;
 
 pub use pilot::{Host, Pilot};
@@ -195,6 +197,7 @@ impl Simulation {
             range: scenario.range,
             clearance: scenario.clearance,
             field: scenario.field,
+            sensor: scenario.sensor(),
             come_home: scenario.conditions.mission.come_home,
             energy: scenario.conditions.mission.energy,
             link: scenario.conditions.link(),
@@ -241,6 +244,8 @@ impl Simulation {
                 stops: vec![None; scenario.robots],
                 violations: 0,
                 contacts: 0,
+                bumps: 0,
+                false_claims: 0,
             },
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
@@ -259,7 +264,21 @@ impl Simulation {
     }
 
     /// What happened.
-    pub fn finish(self) -> VoxelTrace {
+    pub fn finish(mut self) -> VoxelTrace {
+        let claims = |robot: &&Robot, stop: &Option<Stop<Voxel>>| {
+            robot.alive && stop.is_some_and(|stop| stop.is_complete())
+        };
+        let is_left = |robot: &Robot, voxel| {
+            let content = robot.planner.content(voxel);
+            self.visible.contains(&self.scene, voxel) && content == Content::Unknown
+        };
+        let robots = self.robots.iter().zip(&self.trace.stops);
+        let claiming = robots.filter(|(robot, stop)| claims(robot, stop));
+        let wrong = claiming.filter(|(robot, _)| {
+            let mut voxels = self.scene.voxels();
+            voxels.any(|voxel| is_left(robot, voxel))
+        });
+        self.trace.false_claims = wrong.count() as u32;
         self.trace
     }
 
@@ -332,8 +351,15 @@ impl Simulation {
                     self.seen += u32::from(self.visible.contains(&self.scene, voxel));
                 }
             }
-            let Robot { at, heading, .. } = *robot;
-            robot.planner.observe(at, heading, &robot.view);
+            let Robot {
+                id, at, heading, ..
+            } = *robot;
+            let conditions = &self.trace.scenario.conditions;
+            let lot = Lot::new(conditions.seed)
+                .of(self.now.into())
+                .of(id.0.into());
+            let told = told(&conditions.trouble, lot, at, &robot.view);
+            robot.planner.observe(at, heading, &told);
             if let Some(centre) = &mut self.centre {
                 centre.learn(&robot.view);
             }
@@ -426,8 +452,16 @@ impl Simulation {
             Action::Stop(stop) => (at, Deed::Stopped(stop.reason()), Some(stop)),
         };
         let work = self.robots[i].planner.work();
-        let is_allowed = self.is_allowed(at, to);
-        self.trace.violations += u32::from(!is_allowed);
+        if !self.is_allowed(at, to) {
+            // A look may have hidden what is there.
+            match self.trace.scenario.conditions.trouble.can_open_walls() {
+                true => {
+                    self.trace.bumps += 1;
+                    to = at;
+                }
+                false => self.trace.violations += 1,
+            }
+        }
         self.trace.stops[i] = stop;
         self.robots[i].stopped = stop.is_some();
         let status = self.robots[i].planner.status();

@@ -2,11 +2,11 @@
 
 use clap::ValueEnum;
 use planner_core::volume::{Field, MAX_CLEARANCE, Voxel};
-use planner_core::voxel_survey::MAX_RANGE;
+use planner_core::voxel_survey::{MAX_RANGE, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::error::BodyText;
-use super::{Conditions, ScenarioError};
+use super::{Conditions, Preset, ScenarioError, Trouble};
 use crate::scene::{LARGEST, LEVELS, Scene};
 
 /// How the robots decide.
@@ -48,6 +48,16 @@ impl std::fmt::Display for Planner {
         f.write_str(value.get_name())
     }
 }
+
+/// What of grids applies among voxels, too.
+const OPTIONS: [&str; 6] = [
+    "come-home",
+    "energy",
+    "wind",
+    "preset",
+    "false-walls",
+    "false-frees",
+];
 
 /// The largest radius, in voxels, of a ball that touches nothing wherever a robot is and on its
 /// way, by clearance: to the nearest voxel that need not be free.
@@ -105,7 +115,11 @@ impl Scenario {
     pub fn check(&self, scene: &Scene) -> Result<(), ScenarioError> {
         self.conditions.check(self.robots)?;
         self.conditions
-            .check_flown("in a town of voxels", &["come-home", "energy", "wind"])?;
+            .check_flown("in a town of voxels", &OPTIONS)?;
+        if self.conditions.preset == Preset::Lidar {
+            let expected = "truthful or rangers among voxels";
+            return Err(ScenarioError::setting("preset", Preset::Lidar, expected));
+        }
         if !(2..=MAX_RANGE).contains(&self.range) {
             let expected = format!("2 to {MAX_RANGE} voxels");
             return Err(ScenarioError::setting("range", self.range, expected));
@@ -135,6 +149,18 @@ impl Scenario {
                 world: "to what voxel-survey is compared with, which knows no way home",
             });
         }
+        let mut errors = self.conditions.trouble.settings(&Trouble::default());
+        if self.conditions.preset != Preset::Truthful {
+            errors.push(("preset", String::new()));
+        }
+        if let Some((option, _)) = errors.into_iter().next()
+            && self.planner != Planner::VoxelSurvey
+        {
+            return Err(ScenarioError::NotHere {
+                option,
+                world: "to what voxel-survey is compared with, which believes every look",
+            });
+        }
         if self.planner != Planner::VoxelSurvey && !self.field.is_whole() {
             return Err(ScenarioError::NotHere {
                 option: "sensor",
@@ -157,6 +183,14 @@ impl Scenario {
                 side: LARGEST,
                 most: LEVELS,
             }),
+        }
+    }
+
+    /// What the robots take their sensors for.
+    pub(crate) fn sensor(&self) -> Sensor {
+        match self.conditions.preset {
+            Preset::Truthful => Sensor::Truthful,
+            Preset::Lidar | Preset::Rangers => Sensor::Errs,
         }
     }
 

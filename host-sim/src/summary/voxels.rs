@@ -25,6 +25,11 @@ pub struct Summary {
     pub violations: u32,
     /// Steps that the wind ended beside or in something.
     pub contacts: u32,
+    /// Robots that say in the end that all that they could see is known, while something is
+    /// not known to them.
+    pub false_claims: u32,
+    /// Steps that ended at an obstacle that a look may have hidden.
+    pub bumps: u32,
     /// How the robots decided.
     pub planner: Planner,
     /// Sensor range in voxels.
@@ -99,6 +104,8 @@ impl Summary {
             mean_work_per_tick: work().map(f64::from).sum::<f64>() / work().len().max(1) as f64,
             violations: trace.violations,
             contacts: trace.contacts,
+            false_claims: trace.false_claims,
+            bumps: trace.bumps,
             planner: scenario.planner,
             range: scenario.range,
             clearance: scenario.clearance,

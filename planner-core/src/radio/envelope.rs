@@ -67,6 +67,11 @@ impl<'a> Sealed<'a> {
             .ok_or(FrameError::Length(self.body.len() + self.check.len()))
     }
 
+    /// The kind that the frame says it is of.
+    pub(super) const fn kind(&self) -> u8 {
+        self.header[1]
+    }
+
     /// The header of an intact frame of this kind about `grid`.
     ///
     /// # Errors

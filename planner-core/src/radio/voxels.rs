@@ -1,4 +1,4 @@
-//! The frame of a map of voxels: kind 3 of the wire format.
+//! The frame of a map of voxels: kind 3 of the wire format, and kind 4 if some are free again.
 
 use heapless::Vec;
 
@@ -16,6 +16,8 @@ use crate::volume::{Voxel, VoxelPatch};
 
 /// The kind of frame that carries tiles of levels of voxels.
 const VOXELS: u8 = 3;
+/// The same in which some are occupied without known: free again.
+const WITHDRAWN: u8 = 4;
 /// Bytes between the header and the records.
 const STATUS: usize = 9;
 /// Bytes of a record before its masks.
@@ -80,18 +82,14 @@ impl VoxelFrame {
             sequence: self.sequence,
         };
         let Status { position, goal, .. } = self.status;
-        let mut writer = Writer::new(VOXELS, header, buffer);
+        let patches = fitting(&self.patches);
+        let mut writer = Writer::new(kind_of(patches), header, buffer);
         writer.put(&[u8::from(self.status.has_stopped()) | u8::from(goal.is_some()) << 1]);
         for voxel in [position, goal.unwrap_or(Voxel::new(0, 0, 0))] {
             writer.put(&packed(voxel.cell()));
             writer.put(&[voxel.z as u8]);
         }
-        let mut room = ROOM;
-        for patch in &self.patches {
-            let Some(left) = room.checked_sub(length(patch)) else {
-                break;
-            };
-            room = left;
+        for patch in patches {
             let VoxelPatch {
                 tile,
                 z,
@@ -126,7 +124,11 @@ impl VoxelFrame {
         let sealed = Sealed::new(bytes, key)?;
         let (status, mut rest) = sealed.payload::<STATUS>(ROOM)?;
         let &[state, p0, p1, p2, height, g0, g1, g2, goal_height] = status;
-        let header = sealed.open(VOXELS, grid)?;
+        let kind = match sealed.kind() {
+            WITHDRAWN => WITHDRAWN,
+            _ => VOXELS,
+        };
+        let header = sealed.open(kind, grid)?;
         if state & !3 != 0 {
             return Err(FrameError::Field(Field::State));
         }
@@ -145,6 +147,9 @@ impl VoxelFrame {
             let _ = patches.push(patch);
             rest = behind;
         }
+        if kind_of(&patches) != kind {
+            return Err(FrameError::Field(Field::Tile));
+        }
         Ok(Self {
             grid: header.grid,
             sender: header.sender,
@@ -156,6 +161,28 @@ impl VoxelFrame {
             },
             patches,
         })
+    }
+}
+
+/// The first of `patches`, as many as there is room for.
+fn fitting(patches: &[VoxelPatch]) -> &[VoxelPatch] {
+    let mut room = ROOM;
+    let fits = |patch: &&VoxelPatch| match room.checked_sub(length(patch)) {
+        Some(left) => {
+            room = left;
+            true
+        }
+        None => false,
+    };
+    let count = patches.iter().take_while(fits).count();
+    patches.get(..count).unwrap_or(&[])
+}
+
+/// The kind of a frame with these pieces.
+fn kind_of(patches: &[VoxelPatch]) -> u8 {
+    match patches.iter().any(|patch| patch.withdrawn() != 0) {
+        true => WITHDRAWN,
+        false => VOXELS,
     }
 }
 
@@ -175,11 +202,10 @@ fn decode_patch(
     let known = if is_whole { !0 } else { mask()? };
     let occupied = if has_obstacles { mask()? } else { 0 };
     let tile = TileIndex { x: x & 63, y };
-    let is_odd = known == 0
-        || known & !tile.inside(extent) != 0
+    let is_odd = known | occupied == 0
+        || (known | occupied) & !tile.inside(extent) != 0
         || !is_whole && known == !0
-        || has_obstacles && occupied == 0
-        || occupied & !known != 0;
+        || has_obstacles && occupied == 0;
     if y > 63 || z >= levels || is_odd {
         return Err(wrong);
     }

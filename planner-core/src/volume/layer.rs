@@ -31,6 +31,15 @@ impl<const TW: usize, const TH: usize, const L: usize> Layer<TW, TH, L> {
         }
     }
 
+    /// Makes `bits` those of a tile of a level; outside nothing happens.
+    pub(crate) fn put(&mut self, tile: TileIndex, z: u8, bits: u64) {
+        if let Some(level) = self.0.get_mut(usize::from(z))
+            && let Some(word) = level.get_mut(tile)
+        {
+            *word = bits;
+        }
+    }
+
     /// Clears the bit of `voxel`.
     pub(crate) fn clear(&mut self, voxel: Voxel) {
         if let Some((tile, z, bit)) = voxel.place()

@@ -1,9 +1,10 @@
 //! What a robot knows of a box of voxels: several surfaces in one column, as under
 //! bridges and in rooms.
 //!
-//! Two bits a voxel, on 8×8 tiles of each level: known, occupied. Knowledge only
-//! grows, and where two robots disagree *occupied* wins, so merging is commutative,
-//! associative and idempotent. Outside of the box everything counts as known; nothing
+//! Two bits a voxel, on 8×8 tiles of each level: known, occupied. Of the four levels
+//! unknown, free, occupied and *free again* the higher wins, so knowledge only grows, and merging
+//! is commutative, associative and idempotent. Free again is what was taken for occupied and is
+//! not, for good: occupied without known. Outside of the box everything counts as known; nothing
 //! is there, and nothing flies there.
 
 mod body;
@@ -109,10 +110,22 @@ pub struct VoxelPatch {
     pub tile: TileIndex,
     /// Of which level.
     pub z: u8,
-    /// Its known voxels.
+    /// Its voxels that are free or occupied.
     pub known: u64,
-    /// Those of them that are occupied.
+    /// Those of them that are occupied; and others, that are free again.
     pub occupied: u64,
+}
+
+impl VoxelPatch {
+    /// Its voxels that are free again.
+    pub const fn withdrawn(&self) -> u64 {
+        self.occupied & !self.known
+    }
+
+    /// Whether it says nothing.
+    pub const fn is_empty(&self) -> bool {
+        self.known | self.occupied == 0
+    }
 }
 
 /// A map of at most 8·`TW` × 8·`TH` × `L` voxels: 16 bytes for each tile of a level,
@@ -124,6 +137,8 @@ pub struct Volume<const TW: usize, const TH: usize, const L: usize> {
     known: Layer<TW, TH, L>,
     occupied: Layer<TW, TH, L>,
     known_voxels: u32,
+    /// Number of voxels that are free again.
+    withdrawn: u32,
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
@@ -141,6 +156,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
             known: Layer::EMPTY,
             occupied: Layer::EMPTY,
             known_voxels: 0,
+            withdrawn: 0,
         }
     }
 
@@ -171,6 +187,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
         self.known.reset();
         self.occupied.reset();
         self.known_voxels = 0;
+        self.withdrawn = 0;
         Ok(())
     }
 
@@ -187,6 +204,16 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// Number of known voxels.
     pub const fn known_voxels(&self) -> u32 {
         self.known_voxels
+    }
+
+    /// Number of voxels that are free again.
+    pub const fn withdrawn(&self) -> u32 {
+        self.withdrawn
+    }
+
+    /// A number that grows whenever a voxel becomes known or free again.
+    pub(crate) const fn age(&self) -> u32 {
+        self.known_voxels.saturating_add(self.withdrawn)
     }
 
     /// Number of frontiers: free voxels beside an unknown one. Cost: 14 words for each tile
@@ -209,14 +236,18 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// What is known of `voxel`; outside of the box it is free. Cost: two reads.
     pub fn content(&self, voxel: Voxel) -> Content {
         if !self.contains(voxel) {
-            Content::Free
-        } else if self.occupied.get(voxel) {
-            Content::Occupied
-        } else if self.known.get(voxel) {
-            Content::Free
-        } else {
-            Content::Unknown
+            return Content::Free;
         }
+        match (self.known.get(voxel), self.occupied.get(voxel)) {
+            (false, false) => Content::Unknown,
+            (true, true) => Content::Occupied,
+            _ => Content::Free,
+        }
+    }
+
+    /// Whether `voxel` is free again.
+    pub fn is_withdrawn(&self, voxel: Voxel) -> bool {
+        self.occupied.get(voxel) && !self.known.get(voxel)
     }
 
     /// Learns one voxel; says whether that was news. Voxels outside are ignored.
@@ -242,26 +273,48 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
         }
     }
 
+    /// What was taken for occupied is free again; says whether that was news. Voxels outside
+    /// are ignored.
+    pub fn withdraw(&mut self, voxel: Voxel) -> bool {
+        let Some((tile, z, bit)) = voxel.place() else {
+            return false;
+        };
+        self.merge(&VoxelPatch {
+            tile,
+            z,
+            known: 0,
+            occupied: bit,
+        })
+    }
+
     /// Joins `patch` into the map; says whether anything was new. Voxels outside are
     /// ignored. Cost: one tile of a level.
     pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
         let VoxelPatch { tile, z, .. } = *patch;
         let inside = self.inside(tile, z);
-        let known = (patch.known | patch.occupied) & inside & !self.known.word(tile, z);
-        let occupied = patch.occupied & inside & !self.occupied.word(tile, z);
-        if known | occupied == 0 {
+        let (known, occupied) = (self.known.word(tile, z), self.occupied.word(tile, z));
+        // Levels as numbers of two bits: `occupied`, and whether the two differ.
+        let (ours, theirs) = (known ^ occupied, patch.known ^ patch.occupied);
+        let higher = occupied | patch.occupied & inside;
+        let lower = ours & (occupied | !patch.occupied) | theirs & (patch.occupied | !occupied);
+        let now = [(lower ^ higher) & inside, higher];
+        if now == [known, occupied] {
             return false;
         }
-        self.known.add(tile, z, known);
-        self.occupied.add(tile, z, occupied);
-        self.known_voxels = self.known_voxels.saturating_add(known.count_ones());
+        let [now_known, now_occupied] = now;
+        self.known.put(tile, z, now_known);
+        self.occupied.put(tile, z, now_occupied);
+        let new = (now_known | now_occupied) & !(known | occupied);
+        let withdrawn = now_occupied & !now_known & !(occupied & !known);
+        self.known_voxels = self.known_voxels.saturating_add(new.count_ones());
+        self.withdrawn = self.withdrawn.saturating_add(withdrawn.count_ones());
         true
     }
 
     /// The voxel that the robot is in is free, whatever the map says of it: its own place
     /// is surer than any look.
     pub fn stand(&mut self, voxel: Voxel) {
-        if self.contains(voxel) {
+        if self.content(voxel) == Content::Occupied {
             self.occupied.clear(voxel);
         }
     }
@@ -282,7 +335,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// The free voxels of a tile of a level.
     pub(crate) fn free(&self, tile: TileIndex, z: u8) -> u64 {
-        self.known.word(tile, z) & !self.occupied.word(tile, z)
+        self.known.word(tile, z) ^ self.occupied.word(tile, z)
     }
 
     /// The voxels of a tile of a level that are not free.
@@ -295,14 +348,14 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// The occupied voxels of a tile of a level.
     pub(crate) fn occupied(&self, tile: TileIndex, z: u8) -> u64 {
-        self.occupied.word(tile, z)
+        self.occupied.word(tile, z) & self.known.word(tile, z)
     }
 
     /// The unknown voxels of a tile of a level.
     pub(crate) fn unknown(&self, tile: TileIndex, z: u8) -> u64 {
         match self.known.word(tile, z) {
             u64::MAX => 0,
-            known => self.inside(tile, z) & !known,
+            known => self.inside(tile, z) & !(known | self.occupied.word(tile, z)),
         }
     }
 

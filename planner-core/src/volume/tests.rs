@@ -58,14 +58,27 @@ proptest! {
     /// Any order and any repetition of the same patches gives the same map.
     #[test]
     fn merging_is_a_join(
-        learnt in prop::collection::vec((voxel(), any::<bool>(), 0usize..3), 0..600),
+        learnt in prop::collection::vec((voxel(), 0u8..3, 0usize..3), 0..600),
         order in Just([0usize, 1, 2, 1]).prop_shuffle(),
     ) {
         let mut whole = map();
         let mut parts = [map(), map(), map()];
-        for &(voxel, occupied, part) in &learnt {
-            whole.learn(voxel, occupied);
-            parts[part].learn(voxel, occupied);
+        for &(voxel, level, part) in &learnt {
+            for map in [&mut whole, &mut parts[part]] {
+                match level {
+                    2 => map.withdraw(voxel),
+                    level => map.learn(voxel, level == 1),
+                };
+            }
+        }
+        for voxel in all().filter(|&voxel| whole.contains(voxel)) {
+            let levels = learnt.iter().filter(|learnt| learnt.0 == voxel).map(|learnt| learnt.1);
+            let content = match levels.max() {
+                None => Content::Unknown,
+                Some(1) => Content::Occupied,
+                Some(_) => Content::Free,
+            };
+            prop_assert_eq!(whole.content(voxel), content);
         }
         let mut merged = map();
         for part in order {
@@ -77,8 +90,10 @@ proptest! {
         }
         for voxel in all() {
             prop_assert_eq!(merged.content(voxel), whole.content(voxel));
+            prop_assert_eq!(merged.is_withdrawn(voxel), whole.is_withdrawn(voxel));
         }
         prop_assert_eq!(merged.known_voxels(), whole.known_voxels());
+        prop_assert_eq!(merged.withdrawn(), whole.withdrawn());
     }
 
     /// Sight is mutual, and what it asks for lies near the line.

@@ -240,7 +240,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     pub(super) fn look_far(&mut self) -> Found {
         match self.far.stage {
             Stage::Idle | Stage::FromHome { .. } | Stage::Homeward => {
-                let known = self.volume.known_voxels();
+                let known = self.volume.age();
                 self.far.begin(self.position, Stage::Wave { known });
                 Found::Searching
             }
@@ -271,7 +271,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// The wave begins at home: once it has come to the robot, distances lead back.
     pub(super) fn look_for_home(&mut self, home: Voxel) -> Homeward {
-        let now = self.volume.known_voxels();
+        let now = self.volume.age();
         let known = match self.far.stage {
             Stage::FromHome { known } => known,
             _ => {
@@ -340,7 +340,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             // What was learnt meanwhile may have opened a way, and wind may have taken the robot
             // to where the wave has not come.
             let is_reached = self.far.distance(self.position).is_some();
-            return if known == self.volume.known_voxels() && is_reached {
+            return if known == self.volume.age() && is_reached {
                 Found::Nothing
             } else {
                 Found::Searching

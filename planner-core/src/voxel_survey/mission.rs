@@ -153,7 +153,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     #[inline(never)]
     fn mind_errand(&mut self) -> Option<Action<Voxel, Voxel>> {
         if let Maybe::Just(End::Survey(_, known)) = self.mission.errand
-            && known != self.volume.known_voxels()
+            && known != self.volume.age()
         {
             // There may be more to survey.
             self.mission.end_errand();
@@ -199,7 +199,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if !self.mission.comes_home || self.mission.has_errand() || is_home {
             return self.stop(reason);
         }
-        self.send(End::Survey(reason, self.volume.known_voxels()));
+        self.send(End::Survey(reason, self.volume.age()));
         self.wait(Wait::Search)
     }
 

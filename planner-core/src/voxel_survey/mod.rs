@@ -39,8 +39,8 @@
 //!
 //! # Why it ends
 //! Let N be the voxels of the box. Voxels become known at most N times and poses done at
-//! most N times: *progress*. Claim: between two of these there are boundedly many steps
-//! with good poses, whatever others say.
+//! most N times, anew whenever a voxel becomes free again: *progress*. Claim: between two of
+//! these there are boundedly many steps with good poses, whatever others say.
 //! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
 //!    in a row it stops, as complete if no unknown voxel is beside a free one.
 //! 2. *Searching near* makes a pose done, or gives a way.
@@ -49,9 +49,9 @@
 //! 4. *On the way* each step that is followed uses it up. One that is not closes a
 //!    voxel, at most N in a round.
 //! 5. *At the end of a way* the robot is at its goal and looks: progress, or with a sensor that
-//!    turns it stays and turns until one of its looks, at most 16 for each of eight headings,
-//!    shows something or the pose is done. Or the way was
-//!    longer than is remembered, or did not hold. After `PATIENCE` steps without
+//!    turns or errs it stays, and turns, until one of its looks shows something or the pose is
+//!    done: at most 16 for each of eight headings, and four times as many with one that errs. Or
+//!    the way was longer than is remembered, or did not hold. After `PATIENCE` steps without
 //!    progress no rival counts and only the far search decides, for the nearest pose that
 //!    shows something: it gets nearer by a whole way each time, so it is reached.
 //! 6. *Nothing is left*: a round begins, at most `ROUNDS` of them without anything
@@ -66,6 +66,19 @@
 //! The claim is then of the poses that can be reached from where it stops: a push may take it to
 //! others than those before, which it surveys too.
 //!
+//! # A sensor that errs
+//! With [`Sensor::Errs`] a known voxel changes when three looks in a row contradict it: free
+//! becomes occupied, and occupied becomes *free again*, for good, which others are told of. Sight
+//! grows then: poses within range are not done any more, whoever brought it. Each voxel rises
+//! over three levels at most, so that happens at most N times, and poses become done at most N
+//! times in between: progress stays bounded. A pose is done only once nothing unknown is in sight,
+//! or it was looked from four times in a row: a look that something hides a part of is made again.
+//! Claim: what it leaves out, looks have shown wrong three times in a row, or each time that they
+//! could.
+//!
+//! Nobody flies into what the last look has shown, whatever the map says: the step waits, and
+//! after four ticks its end is closed, as if it were not followed.
+//!
 //! Robots do not stand in each other's way: several may share a voxel. What others tell only saves
 //! looks; nothing waits for it.
 //!
@@ -77,6 +90,7 @@
 //! again. Where a medium carries more than frames, robots [`hear`](VoxelSurvey::hear)
 //! each other and [`merge`](VoxelSurvey::merge) pieces of maps.
 
+mod doubt;
 mod far;
 mod gain;
 mod mission;
@@ -98,6 +112,8 @@ use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
 use crate::tile::TileIndex;
 use crate::volume::{Field, Heading, Layer, MAX_CLEARANCE, MAX_REACH, Volume, Voxel, VoxelPatch};
 use crate::zeroed::Maybe;
+use doubt::Doubts;
+pub use doubt::Sensor;
 use far::Far;
 use mission::Mission;
 use news::News;
@@ -136,6 +152,8 @@ pub struct Config {
     pub clearance: u8,
     /// What of that the sensors show.
     pub field: Field,
+    /// Whether they err.
+    pub sensor: Sensor,
     /// Whether a robot that has surveyed all flies home, to where it started, before it stops.
     pub come_home: bool,
     /// Ticks in the air that the robot's energy lasts for, as by
@@ -152,6 +170,7 @@ impl Config {
             range: 8,
             clearance: 1,
             field: Field::ALL_ROUND,
+            sensor: Sensor::Truthful,
             come_home: false,
             energy: 0,
             link: LinkConfig::new(),
@@ -167,12 +186,13 @@ impl Default for Config {
 
 /// The planner of one robot over a box of at most 8·`TW` × 8·`TH` × `L` voxels.
 ///
-/// Takes 57 bytes for each tile of a level: 22.8 KB for 40×40×16 voxels, and 1.3 KB.
+/// Takes 57 bytes for each tile of a level: 22.8 KB for 40×40×16 voxels, and 1.6 KB.
 #[derive(Clone, Debug)]
 pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     range: u8,
     clearance: u8,
     field: Field,
+    sensor: Sensor,
     volume: Volume<TW, TH, L>,
     done: Layer<TW, TH, L>,
     position: Voxel,
@@ -194,7 +214,8 @@ pub struct VoxelSurvey<const TW: usize, const TH: usize, const L: usize> {
     /// Voxels into which a step was not followed, since the last round began.
     closed: Layer<TW, TH, L>,
     is_closed: bool,
-    /// The last of them.
+    doubts: Doubts,
+    /// The last that was closed.
     refused: Voxel,
     /// Rounds since anything was learnt, and the number of known voxels then.
     round: u8,
@@ -229,6 +250,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             range: 0,
             clearance: 0,
             field: Field::NONE,
+            sensor: Sensor::Truthful,
             volume: Volume::vacant(),
             done: Layer::EMPTY,
             position: Voxel::new(0, 0, 0),
@@ -245,6 +267,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             has_missed: false,
             closed: Layer::EMPTY,
             is_closed: false,
+            doubts: Doubts::new(),
             refused: Voxel::new(0, 0, 0),
             round: 0,
             round_known: 0,
@@ -300,6 +323,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.clearance = config.clearance.min(MAX_CLEARANCE);
         self.range = config.range.clamp(2.max(self.clearance + 1), MAX_RANGE);
         self.field = config.field;
+        self.sensor = config.sensor;
+        self.doubts = Doubts::new();
         self.position = Voxel::new(0, 0, 0);
         self.turn_to = Turn::NONE;
         self.goal = Voxel::new(0, 0, 0);
@@ -383,13 +408,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if self.lost {
             return;
         }
-        self.volume.stand(at);
+        self.stand(at);
         let is_at_rest = at == self.position;
         if let Some(to) = sent_to.filter(|&to| to != at) {
             if is_at_rest {
-                self.closed.set(to);
-                self.is_closed = true;
-                self.refused = to;
+                self.close(to);
             }
             self.way.clear();
         }
@@ -400,13 +423,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.arrive(at);
         self.closed.clear(at);
+        self.doubts.look();
         let mut is_silent = true;
         for seen in seen {
             is_silent = false;
             let &(voxel, occupied) = seen.borrow();
             // Where the robot is nothing else is.
             let occupied = occupied && voxel != at;
-            if self.volume.learn(voxel, occupied)
+            if self.take_in(voxel, occupied)
                 && let Some((tile, z, _)) = voxel.place()
             {
                 self.news.add(tile, z);
@@ -420,8 +444,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.stopped = false;
         }
         self.silent = 0;
-        let stands_for = self.look_towards(heading);
-        self.note_missed(stands_for, stands_for != heading);
+        if let Some(stands_for) = self.look_towards(heading) {
+            self.note_missed(stands_for, stands_for != heading);
+        }
     }
 
     /// Goes on after a stop with the map at hand: what was given up is tried again.
@@ -531,7 +556,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Takes in a piece of another robot's map; says whether it brought anything.
     pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
         let before = self.volume.known_voxels();
+        let withdrawn = self.volume.withdrawn();
         let brought = self.volume.merge(patch);
+        if self.volume.withdrawn() != withdrawn {
+            self.undo(patch.tile, patch.z);
+        }
         self.sender
             .hearsay
             .told(self.volume.known_voxels() - before);
@@ -558,6 +587,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.peers.age();
         self.sender.tick();
         let action = self.decide();
+        let action = self.heed(action);
         self.sent_to = match action {
             Action::Move(to) => Some(to),
             Action::Wait | Action::Stop(_) => None,
@@ -582,7 +612,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     fn decide(&mut self) -> Action<Voxel, Voxel> {
-        let known = self.volume.known_voxels();
+        let known = self.volume.age();
         if !core::mem::take(&mut self.looked) {
             self.silent = self.silent.saturating_add(1);
         }

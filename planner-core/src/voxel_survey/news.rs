@@ -132,7 +132,7 @@ impl<const TW: usize, const TH: usize, const L: usize> News<TW, TH, L> {
         for _ in 0..STRIDE {
             let (tile, z) = self.turn;
             let patch = volume.patch(tile, z);
-            if patch.known != 0 {
+            if !patch.is_empty() {
                 return Some(patch);
             }
             self.turn = volume.after(tile, z);

@@ -14,6 +14,13 @@ const ROUNDS: u8 = 3;
 const REST: u8 = 8;
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
+    /// No step leads to `at` until a round begins.
+    pub(super) fn close(&mut self, at: Voxel) {
+        self.closed.set(at);
+        self.is_closed = true;
+        self.refused = at;
+    }
+
     /// Nothing counts as closed any more.
     pub(super) fn open_all(&mut self) {
         self.closed.reset();
@@ -32,14 +39,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             );
         }
         self.stopped = true;
-        self.reason = (reason, self.volume.known_voxels());
+        self.reason = (reason, self.volume.age());
         Action::Stop(reason)
     }
 
     /// Nothing is left to fly to: what is closed is tried again, or the robot stops.
     pub(super) fn end_round(&mut self) -> Action<Voxel, Voxel> {
         if self.is_closed {
-            let known = self.volume.known_voxels();
+            let known = self.volume.age();
             if known != self.round_known {
                 self.round_known = known;
                 self.round = 0;

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::volume::{Content, body_voxels, in_sight};
 
+mod errs;
 mod fields;
 mod mission;
 mod wind;
@@ -192,9 +193,11 @@ proptest! {
                         };
                         for &(x, y, z, known, occupied) in patches {
                             let tile = TileIndex { x, y };
-                            let known = known & tile.inside(EXTENT);
-                            if known != 0 {
-                                frame.add(VoxelPatch { tile, z, known, occupied: occupied & known });
+                            let inside = tile.inside(EXTENT);
+                            let (known, occupied) = (known & inside, occupied & inside);
+                            let patch = VoxelPatch { tile, z, known, occupied };
+                            if !patch.is_empty() {
+                                frame.add(patch);
                             }
                         }
                         let length = frame.encode(None, &mut buffer);

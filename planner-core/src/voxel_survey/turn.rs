@@ -1,6 +1,6 @@
 //! Where a sensor that does not show all round is turned.
 
-use super::VoxelSurvey;
+use super::{Sensor, VoxelSurvey};
 use crate::robot::Action;
 use crate::volume::{Heading, Voxel};
 
@@ -17,6 +17,8 @@ pub(super) struct Turn {
     pub(super) looked: u8,
     /// Looks from here since one went where it should.
     late: u8,
+    /// Looks from here that do not count yet.
+    looks: u8,
 }
 
 impl Turn {
@@ -24,11 +26,13 @@ impl Turn {
         wanted: Heading::EAST,
         looked: 0,
         late: 0,
+        looks: 0,
     };
 
     /// Takes in a look; gives the heading that it stands for. A sensor that does not turn is
-    /// taken to have turned in the end, so that what it should have shown is missed.
-    fn look(&mut self, heading: Heading) -> Heading {
+    /// taken to have turned in the end, so that what it should have shown is missed. One that
+    /// errs looks so often before that counts, else it gives none.
+    fn look(&mut self, heading: Heading, often: u8) -> Option<Heading> {
         self.late = if heading == self.wanted {
             0
         } else {
@@ -40,8 +44,13 @@ impl Turn {
             self.late = 0;
             self.wanted
         };
+        self.looks = self.looks.saturating_add(1);
+        if self.looks < often {
+            return None;
+        }
+        self.looks = 0;
         self.looked |= heading.bit();
-        heading
+        Some(heading)
     }
 }
 
@@ -69,13 +78,13 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     }
 
     /// Takes in a look from here: nothing more is to be seen, unless other headings show
-    /// more. Gives the heading that the look stands for.
-    pub(super) fn look_towards(&mut self, heading: Heading) -> Heading {
-        let heading = self.turn_to.look(heading);
+    /// more. Gives the heading that the look stands for, if it counts.
+    pub(super) fn look_towards(&mut self, heading: Heading) -> Option<Heading> {
+        let heading = self.turn_to.look(heading, self.sensor.looks())?;
         if self.field.is_round() || self.turn_to.looked == u8::MAX {
             self.finish(self.position);
         }
-        heading
+        Some(heading)
     }
 
     /// Headings that were looked at from `pose`.
@@ -92,7 +101,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// robot back here otherwise.
     pub(super) fn look_round(&mut self) -> Option<Action<Voxel, Voxel>> {
         let here = self.position;
-        let is_open = !self.field.is_round() && self.fruitless > 0 && !self.done.get(here);
+        let has_more = !self.field.is_round() || self.sensor == Sensor::Errs;
+        let is_open = has_more && self.fruitless > 0 && !self.done.get(here);
         (is_open && self.gain(here, 1) > 0).then_some(Action::Wait)
     }
 

@@ -16,7 +16,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if !self.is_adrift {
             return None;
         }
-        if self.fruitless == 0 || self.volume.known_voxels() != self.last_known {
+        if self.fruitless == 0 || self.volume.age() != self.last_known {
             self.pushes = 0;
         }
         if self.pushes >= PUSHES {

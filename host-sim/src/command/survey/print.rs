@@ -62,6 +62,16 @@ pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
         summary.ticks_to_95,
         summary.violations,
     );
+    if !summary.head.conditions.trouble.is_none() {
+        println!(
+            "  false claims       {} robots say that all is known while something is not",
+            summary.false_claims
+        );
+        println!(
+            "  bumps              {} steps into what was not seen",
+            summary.bumps
+        );
+    }
     for (number, robot) in summary.robots.iter().enumerate() {
         println!(
             "  robot {number:<3} {:>6} steps, {:>6} voxels known, {:>5} frames of {:>7} bytes sent, {}",

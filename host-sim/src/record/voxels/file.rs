@@ -157,6 +157,8 @@ impl VoxelTrace {
             stops: header.stops,
             violations: 0,
             contacts: 0,
+            bumps: 0,
+            false_claims: 0,
             scenario,
             scene,
         };

@@ -70,6 +70,27 @@ const FULL: [u8; 51] = [
     0x53, 0xdd,
 ];
 
+/// A voxel free again, one occupied and one free: kind 4.
+fn withdrawn() -> VoxelFrame {
+    let mut frame = quiet();
+    let _ = frame.patches.push(VoxelPatch {
+        tile: TileIndex { x: 0, y: 3 },
+        z: 17,
+        known: 0b110,
+        occupied: 0b011,
+    });
+    frame
+}
+
+#[rustfmt::skip]
+const WITHDRAWN: [u8; 37] = [
+    0x02, 0x04, 0xfe, 0xca, 0x07, 0x02, 0x01, 0x01,
+    0x03, 0xc0, 0x03, 17, 0x00, 0x00, 0x00, 0,
+    // tile 0, 3 of level 17: what is known, what is occupied or free again
+    0x80, 0x03, 17, 0x06, 0, 0, 0, 0, 0, 0, 0, 0x03, 0, 0, 0, 0, 0, 0, 0,
+    0x17, 0x33,
+];
+
 fn decoded(bytes: &[u8]) -> Result<VoxelFrame, FrameError> {
     VoxelFrame::decode(bytes, None, GRID, EXTENT, LEVELS)
 }
@@ -98,7 +119,9 @@ fn altered(at: usize, byte: u8) -> Vec<u8> {
 }
 
 #[test]
-fn the_bytes_of_two_frames() {
+fn the_bytes_of_three_frames() {
+    assert_eq!(encoded(&withdrawn()), WITHDRAWN);
+    assert_eq!(decoded(&WITHDRAWN), Ok(withdrawn()));
     assert_eq!(encoded(&quiet()), QUIET);
     assert_eq!(encoded(&full()), FULL);
     assert_eq!(decoded(&QUIET), Ok(quiet()));
@@ -131,6 +154,12 @@ fn what_is_wrong_is_named() {
     assert_eq!(decoded(&unused_bit), field(Field::Tile));
     let level_beyond = altered(18, 18);
     assert_eq!(decoded(&level_beyond), field(Field::Tile));
+    let mut none_withdrawn = WITHDRAWN;
+    none_withdrawn[19] = 7;
+    assert_eq!(
+        decoded(&checked(none_withdrawn.to_vec())),
+        field(Field::Tile)
+    );
     let occupied_unknown = altered(30, 0x12);
     assert_eq!(decoded(&occupied_unknown), field(Field::Tile));
     let nothing_known = altered(48, 0);
@@ -178,10 +207,11 @@ fn frame() -> impl Strategy<Value = VoxelFrame> {
         any::<u16>(),
         voxel(),
         proptest::option::of(voxel()),
-        any::<bool>(),
+        any::<[bool; 2]>(),
         prop::collection::vec(patch, 0..12),
     )
-        .prop_map(|(sender, sequence, position, goal, stopped, patches)| {
+        .prop_map(|(sender, sequence, position, goal, flags, patches)| {
+            let [stopped, withdraws] = flags;
             let mut frame = VoxelFrame {
                 grid: GRID,
                 sender: RobotId(sender),
@@ -195,14 +225,15 @@ fn frame() -> impl Strategy<Value = VoxelFrame> {
             };
             for (x, y, z, known, occupied) in patches {
                 let tile = TileIndex { x, y };
-                let known = known & tile.inside(EXTENT);
-                if known != 0 {
-                    frame.add(VoxelPatch {
-                        tile,
-                        z,
-                        known,
-                        occupied: occupied & known,
-                    });
+                let inside = tile.inside(EXTENT);
+                let patch = VoxelPatch {
+                    tile,
+                    z,
+                    known: known & inside,
+                    occupied: occupied & inside & if withdraws { !0 } else { known },
+                };
+                if !patch.is_empty() {
+                    frame.add(patch);
                 }
             }
             frame
@@ -225,7 +256,9 @@ proptest! {
         is_checked in any::<bool>(),
     ) {
         if in_form && bytes.len() >= QUIET.len() {
+            let kind = bytes[1];
             bytes[..4].copy_from_slice(&QUIET[..4]);
+            bytes[1] = 3 + (kind & 1);
             bytes[7] &= 1;
             bytes[8..16].copy_from_slice(&QUIET[8..16]);
         }

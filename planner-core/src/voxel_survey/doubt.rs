@@ -1,0 +1,220 @@
+//! What looks say against the map, when the map gives in, and steps that wait meanwhile.
+
+use heapless::Vec;
+
+use super::VoxelSurvey;
+use crate::robot::{Action, Wait};
+use crate::tile::{TILE, TileIndex};
+use crate::volume::{Content, MAX_REACH, Voxel};
+
+/// What a fleet takes its sensors for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Sensor {
+    /// Every look is believed at once, and what is occupied stays so.
+    #[default]
+    Truthful,
+    /// Looks err now and then: three in a row against the map change it. What they find free
+    /// again stays free; a look that shows something there only holds a step back.
+    Errs,
+}
+
+impl Sensor {
+    /// Looks from one place after which no more is expected of it.
+    pub(super) const fn looks(self) -> u8 {
+        match self {
+            Self::Truthful => 1,
+            Self::Errs => FLIPS + 1,
+        }
+    }
+}
+
+/// Looks in a row that contradict the map before it changes.
+const FLIPS: u8 = 3;
+
+/// How far away they may be made: wherever a look reaches. Errors that come and go are no
+/// rarer near by, and what is never seen from near would stay wrong.
+const FLIP_RANGE: u8 = MAX_REACH;
+
+/// Voxels that are doubted at a time.
+const DOUBTS: usize = 32;
+
+/// Voxels ahead that are remembered.
+const AHEAD: usize = 8;
+
+/// Ticks that a step waits for what the last look showed to go away.
+const HOLD: u8 = 4;
+
+/// A voxel of which looks say otherwise than the map.
+#[derive(Clone, Copy, Debug)]
+struct Doubt {
+    at: Voxel,
+    looks: u8,
+}
+
+/// What looks say against the map.
+#[derive(Clone, Debug)]
+pub(super) struct Doubts {
+    against: Vec<Doubt, DOUBTS>,
+    /// What the last look showed where the map says free, as far as the next step reaches.
+    ahead: Vec<Voxel, AHEAD>,
+    /// Ticks that a step has waited for it.
+    held: u8,
+}
+
+impl Doubts {
+    pub(super) const fn new() -> Self {
+        Self {
+            against: Vec::new(),
+            ahead: Vec::new(),
+            held: 0,
+        }
+    }
+
+    /// A look begins.
+    pub(super) fn look(&mut self) {
+        self.ahead.clear();
+    }
+
+    fn place(&self, at: Voxel) -> Option<usize> {
+        self.against.iter().position(|doubt| doubt.at == at)
+    }
+
+    /// A look agrees with the map.
+    fn settle(&mut self, at: Voxel) {
+        if let Some(place) = self.place(at) {
+            self.against.swap_remove(place);
+        }
+    }
+
+    /// A look contradicts the map; says whether enough have. Where all places are taken it
+    /// does not count.
+    fn add(&mut self, at: Voxel) -> bool {
+        let Some(place) = self.place(at) else {
+            let _ = self.against.push(Doubt { at, looks: 1 });
+            return false;
+        };
+        if let Some(doubt) = self.against.get_mut(place) {
+            doubt.looks += 1;
+            if doubt.looks < FLIPS {
+                return false;
+            }
+            self.against.swap_remove(place);
+        }
+        true
+    }
+
+    /// Whether something ahead is within the body about `to`, or may be.
+    fn obstruct(&self, to: Voxel, clearance: u8) -> bool {
+        let reach = u32::from(clearance) * u32::from(clearance);
+        let is_in_reach = |at: &Voxel| at.distance_squared(to) <= reach;
+        self.ahead.is_full() || self.ahead.iter().any(is_in_reach)
+    }
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
+    /// Takes in what a look from here shows of `voxel`; says whether the map has changed.
+    ///
+    /// Cost: of a sensor that errs, a comparison with each voxel that is doubted.
+    pub(super) fn take_in(&mut self, voxel: Voxel, occupied: bool) -> bool {
+        let has_changed = match self.sensor {
+            Sensor::Truthful => self.volume.learn(voxel, occupied),
+            Sensor::Errs => self.weigh(voxel, occupied),
+        };
+        let may_differ = self.sensor == Sensor::Errs || self.volume.withdrawn() > 0;
+        if occupied && may_differ {
+            let reach = u32::from(self.clearance) + 1;
+            let is_ahead = voxel.distance_squared(self.position) <= reach * reach;
+            if is_ahead && self.is_free_inside(voxel) {
+                let _ = self.doubts.ahead.push(voxel);
+            }
+        }
+        has_changed
+    }
+
+    fn is_free_inside(&self, voxel: Voxel) -> bool {
+        self.volume.contains(voxel) && self.volume.content(voxel) == Content::Free
+    }
+
+    #[inline(never)]
+    pub(super) fn weigh(&mut self, voxel: Voxel, occupied: bool) -> bool {
+        let content = self.volume.content(voxel);
+        if content == Content::Unknown {
+            return self.volume.learn(voxel, occupied);
+        }
+        if occupied == (content == Content::Occupied) {
+            self.doubts.settle(voxel);
+            return false;
+        }
+        let range = u32::from(FLIP_RANGE);
+        let is_final = self.volume.is_withdrawn(voxel) || !self.volume.contains(voxel);
+        let is_far = voxel.distance_squared(self.position) > range * range;
+        if is_final || is_far || !self.doubts.add(voxel) {
+            return false;
+        }
+        match occupied {
+            true => self.volume.learn(voxel, true),
+            false => self.withdraw(voxel),
+        }
+    }
+
+    /// The robot stands at `voxel`: nothing else is there.
+    pub(super) fn stand(&mut self, voxel: Voxel) {
+        match self.sensor {
+            Sensor::Truthful => self.volume.stand(voxel),
+            Sensor::Errs if self.volume.content(voxel) == Content::Occupied => {
+                if self.withdraw(voxel)
+                    && let Some((tile, z, _)) = voxel.place()
+                {
+                    self.news.add(tile, z);
+                }
+            }
+            Sensor::Errs => {}
+        }
+    }
+
+    fn withdraw(&mut self, voxel: Voxel) -> bool {
+        let is_news = self.volume.withdraw(voxel);
+        if is_news && let Some((tile, z, _)) = voxel.place() {
+            self.undo(tile, z);
+        }
+        is_news
+    }
+
+    /// Something of a tile of a level is free again: poses that may have it in sight are not
+    /// done any more.
+    ///
+    /// Cost: a word for each tile of a level within range.
+    pub(super) fn undo(&mut self, tile: TileIndex, z: u8) {
+        let tiles = self.range.div_ceil(TILE as u8);
+        let span = |at: u8, by: u8| at.saturating_sub(by)..=at.saturating_add(by);
+        for z in span(z, self.range) {
+            for y in span(tile.y, tiles) {
+                for x in span(tile.x, tiles) {
+                    self.done.put(TileIndex { x, y }, z, 0);
+                }
+            }
+        }
+    }
+
+    /// Holds a step back into what the last look has shown: for a while, and then its end is
+    /// closed.
+    pub(super) fn heed(&mut self, action: Action<Voxel, Voxel>) -> Action<Voxel, Voxel> {
+        let Action::Move(to) = action else {
+            return action;
+        };
+        if !self.doubts.obstruct(to, self.clearance) {
+            self.doubts.held = 0;
+            return action;
+        }
+        self.doubts.held += 1;
+        if self.doubts.held < HOLD {
+            let _ = self.way.push(to);
+        } else {
+            self.doubts.held = 0;
+            self.way.clear();
+            self.close(to);
+        }
+        self.wait(Wait::Obstructed)
+    }
+}

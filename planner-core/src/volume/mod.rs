@@ -252,15 +252,22 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// Learns one voxel; says whether that was news. Voxels outside are ignored.
     pub fn learn(&mut self, voxel: Voxel, occupied: bool) -> bool {
-        let Some((tile, z, bit)) = voxel.place() else {
+        let Some((tile, z, bit)) = voxel.place().filter(|_| self.contains(voxel)) else {
             return false;
         };
-        self.merge(&VoxelPatch {
-            tile,
-            z,
-            known: bit,
-            occupied: if occupied { bit } else { 0 },
-        })
+        let is_known = self.known.word(tile, z) & bit != 0;
+        let is_marked = self.occupied.word(tile, z) & bit != 0;
+        if is_marked || is_known && !occupied {
+            return false;
+        }
+        if !is_known {
+            self.known.add(tile, z, bit);
+            self.known_voxels = self.known_voxels.saturating_add(1);
+        }
+        if occupied {
+            self.occupied.add(tile, z, bit);
+        }
+        true
     }
 
     /// Everything known of a tile of a level, as it travels.
@@ -348,14 +355,20 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// The occupied voxels of a tile of a level.
     pub(crate) fn occupied(&self, tile: TileIndex, z: u8) -> u64 {
-        self.occupied.word(tile, z) & self.known.word(tile, z)
+        match self.occupied.word(tile, z) {
+            marked if self.withdrawn > 0 => marked & self.known.word(tile, z),
+            occupied => occupied,
+        }
     }
 
     /// The unknown voxels of a tile of a level.
     pub(crate) fn unknown(&self, tile: TileIndex, z: u8) -> u64 {
         match self.known.word(tile, z) {
             u64::MAX => 0,
-            known => self.inside(tile, z) & !(known | self.occupied.word(tile, z)),
+            known if self.withdrawn > 0 => {
+                self.inside(tile, z) & !(known | self.occupied.word(tile, z))
+            }
+            known => self.inside(tile, z) & !known,
         }
     }
 

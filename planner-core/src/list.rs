@@ -53,6 +53,16 @@ pub(crate) fn push_out<T, const N: usize>(list: &mut Vec<T, N>, value: T) {
     }
 }
 
+/// Takes out what is at `place`, if there is something; the last one takes its place.
+pub(crate) fn take_out<T, const N: usize>(list: &mut Vec<T, N>, place: usize) {
+    if let Some(last) = list.len().checked_sub(1)
+        && place <= last
+    {
+        list.swap(place, last);
+        list.pop();
+    }
+}
+
 /// As many of `values` as there is room for.
 pub(crate) fn collect<T, const N: usize>(values: impl IntoIterator<Item = T>) -> Vec<T, N> {
     let mut list = Vec::new();
@@ -93,6 +103,15 @@ mod tests {
                 }
                 prop_assert_eq!(list.as_slice(), oracle.as_slice());
             }
+        }
+    }
+
+    #[test]
+    fn the_last_takes_the_place_of_what_is_taken_out() {
+        let mut list: Vec<u8, 4> = collect(0..4);
+        for (place, left) in [(1, &[0, 3, 2][..]), (2, &[0, 3]), (2, &[0, 3]), (0, &[3])] {
+            take_out(&mut list, place);
+            assert_eq!(list.as_slice(), left);
         }
     }
 

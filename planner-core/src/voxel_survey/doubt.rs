@@ -3,9 +3,10 @@
 use heapless::Vec;
 
 use super::VoxelSurvey;
+use crate::list;
 use crate::robot::{Action, Wait};
 use crate::tile::{TILE, TileIndex};
-use crate::volume::{Content, MAX_REACH, Voxel};
+use crate::volume::{Content, Voxel};
 
 /// What a fleet takes its sensors for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,10 +32,6 @@ impl Sensor {
 
 /// Looks in a row that contradict the map before it changes.
 const FLIPS: u8 = 3;
-
-/// How far away they may be made: wherever a look reaches. Errors that come and go are no
-/// rarer near by, and what is never seen from near would stay wrong.
-const FLIP_RANGE: u8 = MAX_REACH;
 
 /// Voxels that are doubted at a time.
 const DOUBTS: usize = 32;
@@ -83,15 +80,20 @@ impl Doubts {
     /// A look agrees with the map.
     fn settle(&mut self, at: Voxel) {
         if let Some(place) = self.place(at) {
-            self.against.swap_remove(place);
+            list::take_out(&mut self.against, place);
         }
     }
 
-    /// A look contradicts the map; says whether enough have. Where all places are taken it
-    /// does not count.
-    fn add(&mut self, at: Voxel) -> bool {
+    /// A look contradicts the map; says whether enough have. Where all places are taken, one
+    /// that is out of range by now leaves; if none is, the look does not count.
+    fn add(&mut self, at: Voxel, is_in_range: impl Fn(Voxel) -> bool) -> bool {
+        let new = Doubt { at, looks: 1 };
         let Some(place) = self.place(at) else {
-            let _ = self.against.push(Doubt { at, looks: 1 });
+            if self.against.push(new).is_err()
+                && let Some(old) = self.against.iter_mut().find(|old| !is_in_range(old.at))
+            {
+                *old = new;
+            }
             return false;
         };
         if let Some(doubt) = self.against.get_mut(place) {
@@ -99,8 +101,8 @@ impl Doubts {
             if doubt.looks < FLIPS {
                 return false;
             }
-            self.against.swap_remove(place);
         }
+        list::take_out(&mut self.against, place);
         true
     }
 
@@ -146,10 +148,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.doubts.settle(voxel);
             return false;
         }
-        let range = u32::from(FLIP_RANGE);
+        let (here, range) = (self.position, u32::from(self.range));
+        let is_in_range = |at: Voxel| at.distance_squared(here) <= range * range;
         let is_final = self.volume.is_withdrawn(voxel) || !self.volume.contains(voxel);
-        let is_far = voxel.distance_squared(self.position) > range * range;
-        if is_final || is_far || !self.doubts.add(voxel) {
+        if is_final || !self.doubts.add(voxel, is_in_range) {
             return false;
         }
         match occupied {

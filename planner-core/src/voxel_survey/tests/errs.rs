@@ -212,15 +212,22 @@ fn nobody_flies_into_what_it_sees() {
     }
 }
 
+/// Where all places are taken, a look counts only if a place is of a voxel out of range.
 #[test]
-fn a_doubt_more_than_there_is_room_for_does_not_count() {
-    let mut robot = misled(Sensor::Errs, WALL);
-    for at in all().filter(|at| *at != WALL).take(40) {
-        robot.volume.learn(at, true);
-        robot.weigh(at, false);
+fn a_doubt_more_than_there_is_room_for_takes_the_place_of_one_out_of_range() {
+    for are_far in [false, true] {
+        let mut robot = misled(Sensor::Errs, WALL);
+        let is_near = |at: Voxel| at.distance_squared(START) <= u32::from(RANGE * RANGE);
+        let others = all().filter(|&at| at != WALL && is_near(at) != are_far);
+        for at in others.take(40) {
+            robot.volume.learn(at, true);
+            robot.weigh(at, false);
+        }
+        for _ in 0..3 {
+            assert_eq!(robot.volume().content(WALL), Content::Occupied);
+            robot.weigh(WALL, false);
+        }
+        let is_open = robot.volume().content(WALL) == Content::Free;
+        assert_eq!(is_open, are_far);
     }
-    for _ in 0..4 {
-        robot.weigh(WALL, false);
-    }
-    assert_eq!(robot.volume().content(WALL), Content::Occupied);
 }

@@ -13,14 +13,16 @@ const OTHERS: [u32; 3] = [0, 9, 15];
 /// Beams of the scans that it tries.
 const BEAMS: [u32; 3] = [4, 16, 64];
 
-/// Sensors and sizes that the planner among voxels is tried with.
-const VOXEL_SETUPS: [&str; 6] = [
+/// Sensors, sizes and bodies that the planner among voxels is tried with.
+const VOXEL_SETUPS: [&str; 8] = [
     "",
     "_18_levels",
     "_camera",
     "_downward",
     "_lidar",
     "_range_12",
+    "_clearance_2",
+    "_clearance_3",
 ];
 
 /// The worst calls keep to the budget, whatever the map's size and the number of robots.

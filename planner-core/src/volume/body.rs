@@ -15,6 +15,9 @@ pub const MAX_CLEARANCE: u8 = 3;
 const WORD_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 32, 64];
 const VOXEL_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 14, 32];
 
+/// Higher than the highest level.
+const NO_LEVEL: u8 = u8::MAX;
+
 /// How far the ball reaches along a row that is so far away along the other axes; `None` where
 /// it has none.
 fn reach(clearance: u8, dy: i16, dz: i16) -> Option<i16> {
@@ -141,15 +144,20 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     }
 
     /// The voxels of a tile of a level about which a body is not free.
+    ///
+    /// A ball is the same above and below, and to the north and to the south: what is not free
+    /// is joined first, and spread along its rows once for all rows of the same reach.
     #[inline(never)]
     fn bad_about(&self, tile: TileIndex, z: u8, clearance: u8) -> u64 {
         let clearance = clearance.min(MAX_CLEARANCE);
-        let last = i16::from(clearance);
         let mut all = 0;
-        for dz in -last..=last {
-            let Ok(z) = u8::try_from(i16::from(z).saturating_add(dz)) else {
-                continue;
+        for dz in 0..=clearance {
+            let above = z.saturating_add(dz);
+            let below = match dz {
+                0 => NO_LEVEL,
+                _ => z.checked_sub(dz).unwrap_or(NO_LEVEL),
             };
+            let bad = |tile| self.bad(tile, above) | self.bad(tile, below);
             // Of the tiles to the north and to the south of this one, and of it, with those
             // to both sides.
             let rows = [
@@ -163,16 +171,21 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
                     tile,
                     tile.beside(Direction::East),
                 ];
-                sides.map(|tile| self.bad(tile, z))
+                sides.map(bad)
             });
             if rows.as_flattened().iter().all(|&bad| bad == 0) {
                 continue;
             }
-            for dy in 0..=last {
-                if let Some(reach) = reach(clearance, dy, dz) {
-                    let [north, own, south] = rows.map(|row| along(row, reach as u32));
-                    all |= across([north, own, south], dy as u32);
+            let (mut wide, mut width) = (rows.map(|[_, own, _]| own), 0);
+            for dy in 0..=clearance {
+                let Some(reach) = reach(clearance, dy.into(), dz.into()) else {
+                    break;
+                };
+                if reach != width {
+                    wide = rows.map(|row| along(row, reach as u32));
+                    width = reach;
                 }
+                all |= across(wide, dy.into());
             }
         }
         all

@@ -37,22 +37,25 @@ static LOOK: ConstStaticCell<Look> = ConstStaticCell::new(Look {
 
 type Robot = VoxelSurvey<5, 5, { LEVELS as usize }>;
 
-/// A sensor, and the height of the box in which it is tried.
+/// A sensor, a body, and the height of the box in which they are tried.
 struct Setup {
     /// As in the names of what is measured.
     name: &'static str,
     range: u8,
     field: Field,
     levels: u8,
+    clearance: u8,
 }
 
-const SETUPS: [Setup; 6] = [
+const SETUPS: [Setup; 8] = [
     Setup::new("", RANGE, Field::ALL_ROUND, 16),
     Setup::new("_18_levels", RANGE, Field::ALL_ROUND, LEVELS),
     Setup::new("_camera", RANGE, Field::CAMERA, LEVELS),
     Setup::new("_downward", RANGE, Field::DOWNWARD, LEVELS),
     Setup::new("_lidar", RANGE, Field::LIDAR, LEVELS),
     Setup::new("_range_12", MAX_RANGE, Field::ALL_ROUND, LEVELS),
+    Setup::new("_clearance_2", RANGE, Field::ALL_ROUND, LEVELS).wide(2),
+    Setup::new("_clearance_3", RANGE, Field::ALL_ROUND, LEVELS).wide(3),
 ];
 
 impl Setup {
@@ -62,6 +65,21 @@ impl Setup {
             range,
             field,
             levels,
+            clearance: 1,
+        }
+    }
+
+    /// The same with a larger body.
+    const fn wide(self, clearance: u8) -> Self {
+        Self { clearance, ..self }
+    }
+
+    /// What a robot with it knows of a voxel of `place`: room for its body, and that.
+    fn kind(&self, place: Place, at: Voxel) -> Kind {
+        let reach = u32::from(self.clearance);
+        match at.distance_squared(place.own()) <= (reach * reach).max(3) {
+            true => Kind::Free,
+            false => place.kind(at),
         }
     }
 }
@@ -134,9 +152,6 @@ impl Place {
 
     fn kind(self, at: Voxel) -> Kind {
         let Voxel { x, y, z } = at;
-        if at.distance_squared(self.own()) <= 3 {
-            return Kind::Free;
-        }
         match self {
             Self::Scattered(seed) => {
                 // Ever more unknown voxels, and ever more that are occupied.
@@ -226,6 +241,7 @@ fn reset(robot: &mut Robot, setup: &Setup, id: RobotId) {
     let config = Config {
         range: setup.range,
         field: setup.field,
+        clearance: setup.clearance,
         ..Config::new()
     };
     let _ = robot.reset(config, id, Extent::new(40, 40), setup.levels);
@@ -240,7 +256,7 @@ fn enter(robot: &mut Robot, setup: &Setup, place: Place) {
             let (mut known, mut occupied) = (0, 0);
             for bit in 0..64 {
                 let cell = tile.cell(bit);
-                match place.kind(Voxel::new(cell.x, cell.y, z)) {
+                match setup.kind(place, Voxel::new(cell.x, cell.y, z)) {
                     Kind::Unknown => {}
                     Kind::Free => known |= 1 << bit,
                     Kind::Occupied => {
@@ -296,7 +312,7 @@ fn talk(
             .flat_map(move |y| (-reach..=reach).map(move |x| Voxel::new(20 + x, 20 + y, 8 + z)))
     });
     for voxel in ball.filter(|&at| at.distance_squared(eye) <= u32::from(RANGE).pow(2)) {
-        match place.kind(voxel) {
+        match setup.kind(place, voxel) {
             Kind::Unknown => {}
             Kind::Free => look.add(voxel, false),
             Kind::Occupied => look.add(voxel, true),

@@ -90,8 +90,10 @@
 //! again. Where a medium carries more than frames, robots [`hear`](VoxelSurvey::hear)
 //! each other and [`merge`](VoxelSurvey::merge) pieces of maps.
 
+mod config;
 mod doubt;
 mod far;
+mod fleet;
 mod gain;
 mod mission;
 mod near;
@@ -105,13 +107,12 @@ use core::borrow::Borrow;
 use heapless::Vec;
 
 use crate::cell::{Extent, ExtentError};
-use crate::radio::{
-    FrameError, GridId, Hearsay, Key, LinkConfig, MAX_LEN, Roster, Sender, VoxelFrame,
-};
-use crate::robot::{Action, Activity, RobotId, Status, Stop, Wait};
+use crate::radio::{GridId, LinkConfig, Roster, Sender};
+use crate::robot::{Action, RobotId, Stop, Wait};
 use crate::tile::TileIndex;
-use crate::volume::{Field, Heading, Layer, MAX_CLEARANCE, MAX_REACH, Volume, Voxel, VoxelPatch};
+use crate::volume::{Field, Heading, Layer, MAX_CLEARANCE, MAX_REACH, Volume, Voxel};
 use crate::zeroed::Maybe;
+pub use config::Config;
 use doubt::Doubts;
 pub use doubt::Sensor;
 use far::Far;
@@ -137,52 +138,6 @@ const ECHOES: usize = 32;
 
 /// Largest sensor range in voxels.
 pub const MAX_RANGE: u8 = MAX_REACH;
-
-/// What a fleet agrees on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Config {
-    /// Sensor range in voxels, 2 to [`MAX_RANGE`] and one more than the clearance at least;
-    /// others are brought into these bounds.
-    pub range: u8,
-    /// How far the body of a robot reaches beyond the voxel of its middle, 0 to
-    /// [`MAX_CLEARANCE`]; more counts as that. With 0 it stays in its voxel, with 1 those that
-    /// share a face with it are kept free, then all within so many voxels. A ball of 0.5,
-    /// 0.70, 1.58 and 2.54 voxels' radius touches nothing.
-    pub clearance: u8,
-    /// What of that the sensors show.
-    pub field: Field,
-    /// Whether they err.
-    pub sensor: Sensor,
-    /// Whether a robot that has surveyed all flies home, to where it started, before it stops.
-    pub come_home: bool,
-    /// Ticks in the air that the robot's energy lasts for, as by
-    /// [`energy`](VoxelSurvey::energy) at the start; 0: no limit.
-    pub energy: u32,
-    /// How the robots use the radio. Its origin is that of the lowest level.
-    pub link: LinkConfig,
-}
-
-impl Config {
-    /// A range of 8 voxels all round, and a voxel kept clear.
-    pub const fn new() -> Self {
-        Self {
-            range: 8,
-            clearance: 1,
-            field: Field::ALL_ROUND,
-            sensor: Sensor::Truthful,
-            come_home: false,
-            energy: 0,
-            link: LinkConfig::new(),
-        }
-    }
-}
-
-impl Default for Config {
-    fn default() -> Self {
-        Self::new()
-    }
-}
 
 /// The planner of one robot over a box of at most 8·`TW` × 8·`TH` × `L` voxels.
 ///
@@ -476,101 +431,6 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.done.set(pose);
             self.fruitless = 0;
         }
-    }
-
-    /// What the robot tells the others about itself.
-    pub fn status(&self) -> Status<Voxel> {
-        Status {
-            position: self.position,
-            goal: match self.mission.goal() {
-                _ if self.stopped => None,
-                None => (!self.way.is_empty()).then_some(self.goal),
-                home => home,
-            },
-            activity: Activity::stopped_if(self.stopped || self.mission.has_errand()),
-        }
-    }
-
-    /// Takes in what robot `id` told about itself.
-    pub fn hear(&mut self, id: RobotId, status: Status<Voxel>) {
-        self.peers.hear(id, status);
-    }
-
-    /// Whether a rival, or where it goes, is nearer to `pose`, and that counts.
-    fn is_a_rivals(&self, pose: Voxel) -> bool {
-        if self.fruitless > PATIENCE {
-            return false;
-        }
-        let own = pose.distance_squared(self.position);
-        let is_nearer = |voxel: Voxel| pose.distance_squared(voxel) < own;
-        self.peers.rivals().any(|rival| {
-            is_nearer(rival.status.position) || rival.status.goal.is_some_and(is_nearer)
-        })
-    }
-
-    /// Writes the next frame for the radio and returns its length, or `None` while the
-    /// budget allows none: what the robot itself has seen change, round and round and
-    /// each piece twice, and every fourth time, or when there is no such thing left,
-    /// pieces of its whole map in turn. Call it as often as it gives one, after
-    /// [`observe`](Self::observe) and after [`tick`](Self::tick).
-    ///
-    /// Cost: 256 words for each of at most 11 pieces, and a last time.
-    pub fn transmit(&mut self, buffer: &mut [u8; MAX_LEN]) -> Option<usize> {
-        if !self.sender.may_send() {
-            return None;
-        }
-        let mut frame = VoxelFrame {
-            grid: self.sender.grid,
-            sender: self.sender.id,
-            sequence: self.sender.sequence,
-            status: self.status(),
-            patches: Vec::new(),
-        };
-        self.news.tell(&self.volume, &mut frame);
-        let write = |key: Option<&Key>, buffer: &mut _| frame.encode(key, buffer);
-        Some(self.sender.send(buffer, write))
-    }
-
-    /// Takes in another robot's frame; gives the number of voxels that it brought.
-    ///
-    /// # Errors
-    /// See [`FrameError`]; nothing but [`hearsay`](Self::hearsay) has changed then.
-    pub fn receive(&mut self, bytes: &[u8]) -> Result<u32, FrameError> {
-        let grid = self.sender.grid;
-        let (extent, levels) = (self.volume.extent(), self.volume.levels());
-        let read = VoxelFrame::decode(bytes, self.sender.key(), grid, extent, levels);
-        let sender = |frame: &VoxelFrame| (frame.sender, frame.sequence);
-        let frame = self.sender.admit(bytes, read, sender)?;
-        let before = self.volume.known_voxels();
-        for patch in &frame.patches {
-            self.merge(patch);
-            if self.volume.patch(patch.tile, patch.z) == *patch {
-                self.news.forget(patch.tile, patch.z);
-            }
-        }
-        self.peers
-            .hear_frame(frame.sender, frame.status, frame.sequence);
-        Ok(self.volume.known_voxels() - before)
-    }
-
-    /// Takes in a piece of another robot's map; says whether it brought anything.
-    pub fn merge(&mut self, patch: &VoxelPatch) -> bool {
-        let before = self.volume.known_voxels();
-        let withdrawn = self.volume.withdrawn();
-        let brought = self.volume.merge(patch);
-        if self.volume.withdrawn() != withdrawn {
-            self.undo(patch.tile, patch.z);
-        }
-        self.sender
-            .hearsay
-            .told(self.volume.known_voxels() - before);
-        brought
-    }
-
-    /// How many voxels of the map others told first, and what was refused.
-    /// Contradictions are not counted over voxels.
-    pub const fn hearsay(&self) -> Hearsay {
-        self.sender.hearsay
     }
 
     /// Decides. Call it once per step. The move is to a voxel that shares a face with the

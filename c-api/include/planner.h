@@ -452,6 +452,10 @@ typedef struct {
   uint8_t clearance;
   // Not 0: a robot that has surveyed all flies home, to where it was first, before it stops.
   uint8_t come_home;
+  // Not 0: looks err now and then, and three in a row against the map change it. What is
+  // occupied can be free again then, which others are told of, for good. 0: every look is
+  // believed.
+  uint8_t errs;
   // What a look shows: a `PlannerVoxelField`.
   uint8_t field;
   // For `PLANNER_VOXEL_FIELD_CUSTOM`, how far up it shows: the tangent of the highest

@@ -2,7 +2,7 @@
 
 use planner_core::radio::{Key, LinkConfig, MAX_LEN};
 use planner_core::volume::{Content, Field, Heading, MAX_CLEARANCE, Volume, Voxel};
-use planner_core::voxel_survey::{Config, MAX_RANGE, VoxelSurvey};
+use planner_core::voxel_survey::{Config, MAX_RANGE, Sensor, VoxelSurvey};
 use planner_core::{Action, Activity, Extent, RobotId, Status};
 
 use crate::answer;
@@ -100,6 +100,10 @@ pub struct PlannerVoxelConfig {
     pub clearance: u8,
     /// Not 0: a robot that has surveyed all flies home, to where it was first, before it stops.
     pub come_home: u8,
+    /// Not 0: looks err now and then, and three in a row against the map change it. What is
+    /// occupied can be free again then, which others are told of, for good. 0: every look is
+    /// believed.
+    pub errs: u8,
     /// What a look shows: a `PlannerVoxelField`.
     pub field: u8,
     /// For `PLANNER_VOXEL_FIELD_CUSTOM`, how far up it shows: the tangent of the highest
@@ -257,6 +261,10 @@ pub extern "C" fn planner_voxel_create(
             clearance: config.clearance,
             come_home: config.come_home != 0,
             field: config.field().ok_or(PlannerResult::Sensor)?,
+            sensor: match config.errs {
+                0 => Sensor::Truthful,
+                _ => Sensor::Errs,
+            },
             link: LinkConfig {
                 origin_mm: (config.origin_x_mm, config.origin_y_mm),
                 cell_mm: config.cell_mm,

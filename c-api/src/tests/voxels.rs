@@ -2,7 +2,7 @@
 
 use planner_core::radio::LinkConfig;
 use planner_core::volume::{Field, Heading, Voxel, in_sight};
-use planner_core::voxel_survey::{self, VoxelSurvey};
+use planner_core::voxel_survey::{self, Sensor, VoxelSurvey};
 
 use super::*;
 
@@ -17,6 +17,7 @@ const BOX: PlannerVoxelConfig = PlannerVoxelConfig {
     range: 3,
     clearance: 1,
     come_home: 0,
+    errs: 0,
     field: PlannerVoxelField::AllRound as u8,
     up: 0,
     down: 0,
@@ -143,6 +144,10 @@ fn twin(ours: PlannerVoxelConfig, field: Field) -> Box<VoxelSurvey<5, 5, 16>> {
         clearance: ours.clearance,
         field,
         come_home: ours.come_home != 0,
+        sensor: match ours.errs {
+            0 => Sensor::Truthful,
+            _ => Sensor::Errs,
+        },
         link,
         ..voxel_survey::Config::new()
     };
@@ -169,9 +174,21 @@ fn fly(
     from: Voxel,
     ticks: u32,
 ) -> (PlannerStop, Voxel) {
+    let look = |_, at, heading| view(field, at, heading);
+    fly_seeing(survey, twin, look, from, ticks)
+}
+
+/// The same with what a look shows, by its number.
+fn fly_seeing(
+    survey: *mut PlannerVoxelSurvey,
+    twin: &mut VoxelSurvey<5, 5, 16>,
+    look: impl Fn(u32, Voxel, Heading) -> Vec<(Voxel, bool)>,
+    from: Voxel,
+    ticks: u32,
+) -> (PlannerStop, Voxel) {
     let (mut at, mut heading) = (from, twin.heading());
-    for _ in 0..ticks {
-        let view = view(field, at, heading);
+    for tick in 0..ticks {
+        let view = look(tick, at, heading);
         assert_eq!(observe(survey, at, heading, &view), OK);
         twin.observe_towards(at, heading, &view);
         let action = decide(survey);
@@ -291,6 +308,42 @@ fn a_box_is_left_for_home_as_in_rust() {
                 9 => assert_eq!((stop, at), (PlannerStop::Home, START)),
                 _ => assert_eq!(stop, PlannerStop::Complete),
             }
+        }
+    }
+}
+
+/// Each fifth look takes all that it shows of one level for occupied.
+#[test]
+fn a_box_is_surveyed_with_a_sensor_that_errs_as_in_rust() {
+    let look = |number: u32, at: Voxel, heading| {
+        let mut view = view(Field::ALL_ROUND, at, heading);
+        if number % 5 == 1 {
+            let level = (number / 5 % 4) as i16;
+            view.retain(|(voxel, _)| voxel.distance_squared(at) <= 4);
+            for (voxel, occupied) in &mut view {
+                *occupied |= *voxel != at && voxel.z == level;
+            }
+        }
+        view
+    };
+    let posts = 4;
+    for errs in [0, 1, 255] {
+        let config = PlannerVoxelConfig { errs, ..BOX };
+        let mut memory = room();
+        let survey = ready(&mut memory, config);
+        let mut robot = twin(config, Field::ALL_ROUND);
+        let (stop, _) = fly_seeing(survey, &mut robot, look, START, 2000);
+        assert_ne!(stop, PlannerStop::None);
+        let occupied = |voxel: &Voxel| {
+            let mut state = 9;
+            assert_eq!(planner_voxel_state(survey, (*voxel).into(), &mut state), OK);
+            state == PlannerState::Obstacle as u8
+        };
+        let all = (0..4).flat_map(|z| (0..30).map(move |i| Voxel::new(i % 6, i / 6, z)));
+        let obstacles = all.filter(occupied).count();
+        match errs {
+            0 => assert!(obstacles > posts, "{obstacles}"),
+            _ => assert_eq!(obstacles, posts),
         }
     }
 }

@@ -14,7 +14,7 @@ const OTHERS: [u32; 3] = [0, 9, 15];
 const BEAMS: [u32; 3] = [4, 16, 64];
 
 /// Sensors, sizes and bodies that the planner among voxels is tried with.
-const VOXEL_SETUPS: [&str; 8] = [
+const VOXEL_SETUPS: [&str; 9] = [
     "",
     "_18_levels",
     "_camera",
@@ -23,6 +23,7 @@ const VOXEL_SETUPS: [&str; 8] = [
     "_range_12",
     "_clearance_2",
     "_clearance_3",
+    "_errs",
 ];
 
 /// The worst calls keep to the budget, whatever the map's size and the number of robots.
@@ -133,6 +134,7 @@ impl Figures {
         for setup in VOXEL_SETUPS {
             let calls: &[&str] = match setup {
                 "" => &["observe", "tick", "transmit", "receive"],
+                "_errs" => &["observe"],
                 _ => &["tick"],
             };
             for call in calls {

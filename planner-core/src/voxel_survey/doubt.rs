@@ -117,7 +117,7 @@ impl Doubts {
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Takes in what a look from here shows of `voxel`; says whether the map has changed.
     ///
-    /// Cost: of a sensor that errs, a comparison with each voxel that is doubted.
+    /// Cost: of a sensor that errs, at most two comparisons with each voxel that is doubted.
     pub(super) fn take_in(&mut self, voxel: Voxel, occupied: bool) -> bool {
         let has_changed = match self.sensor {
             Sensor::Truthful => self.volume.learn(voxel, occupied),

@@ -8,7 +8,7 @@ use planner_core::radio::MAX_LEN;
 use planner_core::rng::Rng;
 use planner_core::tile::TileIndex;
 use planner_core::volume::{Field, Voxel, VoxelPatch};
-use planner_core::voxel_survey::{Config, MAX_RANGE, VoxelSurvey};
+use planner_core::voxel_survey::{Config, MAX_RANGE, Sensor, VoxelSurvey};
 use planner_core::{Action, Extent, RobotId};
 use static_cell::ConstStaticCell;
 
@@ -19,6 +19,9 @@ const LEVELS: u8 = 18;
 
 /// How far the robot sees, in voxels.
 const RANGE: u8 = 8;
+
+/// Where it looks around.
+const EYE: Voxel = Voxel::new(20, 20, 8);
 
 /// Voxels within the range.
 const SEEN: usize = 2109;
@@ -207,7 +210,8 @@ struct Calls {
     work: u32,
 }
 
-/// Measures, and prints `name: value` lines: all calls of the first setup, the ticks of all.
+/// Measures, and prints `name: value` lines: all calls of the first setup, the ticks of all, and looks
+/// of a sensor that errs.
 pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
     let (robot, look) = (ROBOT.take(), LOOK.take());
     let mut out = hio::hstdout().map_err(|()| fmt::Error)?;
@@ -234,17 +238,50 @@ pub(crate) fn measure(stopwatch: &Stopwatch) -> fmt::Result {
         }
         writeln!(out, "worst_voxel_survey{name}_work: {}", calls.work)?;
     }
-    Ok(())
+    let most = contradict(robot, stopwatch, look);
+    let (name, instructions) = ("worst_voxel_survey_errs_observe", most.instructions());
+    writeln!(out, "{name}: {instructions}")?;
+    writeln!(out, "{name}_stack: {}", most.stack)
 }
 
 fn reset(robot: &mut Robot, setup: &Setup, id: RobotId) {
+    reset_with(robot, setup, Sensor::Truthful, id);
+}
+
+fn reset_with(robot: &mut Robot, setup: &Setup, sensor: Sensor, id: RobotId) {
     let config = Config {
         range: setup.range,
         field: setup.field,
         clearance: setup.clearance,
+        sensor,
         ..Config::new()
     };
     let _ = robot.reset(config, id, Extent::new(40, 40), setup.levels);
+}
+
+/// The voxels within the range of the robot that looks around.
+fn ball() -> impl Iterator<Item = Voxel> {
+    let reach = i16::from(RANGE);
+    let cube = (-reach..=reach).flat_map(move |z| {
+        (-reach..=reach)
+            .flat_map(move |y| (-reach..=reach).map(move |x| Voxel::new(20 + x, 20 + y, 8 + z)))
+    });
+    cube.filter(|&at| at.distance_squared(EYE) <= u32::from(RANGE).pow(2))
+}
+
+/// Looks of a sensor that errs, each of which contradicts all that the one before it showed.
+fn contradict(robot: &mut Robot, watch: &Stopwatch, look: &mut Look) -> Most {
+    let mut most = Most::default();
+    reset_with(robot, &SETUPS[0], Sensor::Errs, RobotId(0));
+    for is_occupied in [false, true, true, true, false, false, false] {
+        look.length = 0;
+        for voxel in ball() {
+            look.add(voxel, is_occupied && voxel != EYE);
+        }
+        most.of(watch, || robot.observe(EYE, look.seen()));
+        robot.tick();
+    }
+    most
 }
 
 /// Sets up the robot in a place that it knows.
@@ -304,14 +341,8 @@ fn talk(
 ) {
     let mut frames = [(0, [0; MAX_LEN]); FRAMES];
     let mut free = frames.iter_mut();
-    let eye = Voxel::new(20, 20, 8);
-    let reach = i16::from(RANGE);
     look.length = 0;
-    let ball = (-reach..=reach).flat_map(|z| {
-        (-reach..=reach)
-            .flat_map(move |y| (-reach..=reach).map(move |x| Voxel::new(20 + x, 20 + y, 8 + z)))
-    });
-    for voxel in ball.filter(|&at| at.distance_squared(eye) <= u32::from(RANGE).pow(2)) {
+    for voxel in ball() {
         match setup.kind(place, voxel) {
             Kind::Unknown => {}
             Kind::Free => look.add(voxel, false),
@@ -321,7 +352,7 @@ fn talk(
     // In the name of another.
     reset(robot, setup, RobotId(1));
     for _ in 0..4 {
-        calls.observe.of(watch, || robot.observe(eye, look.seen()));
+        calls.observe.of(watch, || robot.observe(EYE, look.seen()));
         robot.tick();
         let mut frame = [0; MAX_LEN];
         while let Some(length) = calls.transmit.of(watch, || robot.transmit(&mut frame)) {

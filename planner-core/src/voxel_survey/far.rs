@@ -307,6 +307,9 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             let reached = self.far.at(self.far.layer, tile, z);
             let open = reached & !self.done.word(tile, z) & !self.far.passed;
             if open != 0 {
+                if self.far.passed == 0 && self.finish_word(tile, z, open) {
+                    continue;
+                }
                 // The cursor stays until all of them are done or passed.
                 let pose = Voxel::of(tile, z, open.trailing_zeros());
                 self.work = self.work.saturating_add(1);

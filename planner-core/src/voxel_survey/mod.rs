@@ -43,7 +43,8 @@
 //! these there are boundedly many steps with good poses, whatever others say.
 //! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
 //!    in a row it stops, as complete if no unknown voxel is beside a free one.
-//! 2. *Searching near* makes a pose done, or gives a way.
+//! 2. *Searching near* makes a pose done, or gives a way; where a slice is too short for that,
+//!    5 holds.
 //! 3. *Searching far*: the wave reaches each pose once, passes over each pose left to a
 //!    rival once, and begins anew only after progress; the way back gets shorter.
 //! 4. *On the way* each step that is followed uses it up. One that is not closes a
@@ -509,6 +510,10 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             0
         };
         self.last_known = known;
+        if !self.way.is_empty() && !self.done.get(self.goal) {
+            // What was seen on the way may have left nothing to see at its end.
+            self.gain(self.goal, 1);
+        }
         if let Some(action) = self.follow() {
             self.look_ahead();
             return action;
@@ -524,10 +529,14 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if let Some(action) = action {
             return action;
         }
-        match self.look_far() {
-            far::Found::Way => self.follow().unwrap_or(Action::Wait),
-            far::Found::Searching => self.wait(Wait::Search),
-            far::Found::Nothing => self.end_round(),
+        // Each time it does some work.
+        loop {
+            return match self.look_far() {
+                far::Found::Searching if self.work < SLICE => continue,
+                far::Found::Searching => self.wait(Wait::Search),
+                far::Found::Way => self.follow().unwrap_or(Action::Wait),
+                far::Found::Nothing => self.end_round(),
+            };
         }
     }
 

@@ -13,7 +13,7 @@ pub(super) const POSES: usize = 512;
 /// Those of them whose view is looked at in one step.
 const VIEWS: usize = 40;
 
-/// Unknown voxels in sight that are counted.
+/// Unknown voxels in certain sight that are counted.
 const ENOUGH: u32 = 128;
 
 /// Half of the side of the window that they lie in.
@@ -27,6 +27,9 @@ const _: () = assert!(
     "where a pose is in the window is an i8 each way"
 );
 const _: () = assert!(POSES <= u16::MAX as usize, "a pose's number is a u16");
+
+/// What a view is worth of which nothing is certain: it may turn out to show nothing.
+const UNSURE: f32 = 0.1;
 
 /// What a view is worth to which a rival is nearer.
 const RIVALS_SHARE: f32 = 0.25;
@@ -78,7 +81,7 @@ impl Place {
 }
 
 impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
-    /// A flight to the pose near by that shows the most for its distance; `None` if
+    /// A flight to the pose near by that is certain to show the most for its distance; `None` if
     /// all poses near by are done.
     pub(super) fn look_near(&mut self) -> Option<Action<Voxel, Voxel>> {
         let here = self.position;
@@ -133,8 +136,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
                 break;
             }
             let at = place.at(here);
-            let gain = self.gain(at, ENOUGH);
-            if gain == 0 {
+            let mut gain = self.sure_gain(at, ENOUGH) as f32;
+            if gain == 0.0 && self.work < super::SLICE {
+                gain = UNSURE * self.gain(at, 1) as f32;
+            }
+            if gain == 0.0 {
                 continue;
             }
             let share = if self.is_a_rivals(at) {
@@ -142,7 +148,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             } else {
                 1.0
             };
-            let score = share * gain as f32 / (START + u32::from(place.steps)) as f32;
+            let score = share * gain / (START + u32::from(place.steps)) as f32;
             if best.is_none_or(|(most, _)| score > most) {
                 best = Some((score, number));
             }

@@ -31,8 +31,13 @@ fn SysTick() {
 pub struct Stopwatch(());
 
 impl Stopwatch {
-    /// Starts the timer at the speed of the processor.
-    pub fn start(mut timer: SYST) -> Self {
+    /// Starts the chip's timer at the speed of the processor.
+    ///
+    /// # Panics
+    /// If it was started before.
+    pub fn start() -> Self {
+        let chip = cortex_m::Peripherals::take().expect("nobody else takes the timer");
+        let mut timer = chip.SYST;
         timer.set_clock_source(SystClkSource::Core);
         timer.set_reload(RELOAD);
         timer.clear_current();

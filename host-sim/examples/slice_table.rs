@@ -10,7 +10,7 @@ use bridge::PlannerConfig;
 use clap::Parser;
 use host_sim::experiments;
 use host_sim::planners::{PlannerKind, Setup, on_host};
-use host_sim::run::{Host, Options, run_on};
+use host_sim::run::{Host, Options, Site, run_on};
 use host_sim::scenario::grid::Scenario;
 use host_sim::sensor::Sensor;
 use host_sim::world::{Family, Starts, generate};
@@ -42,6 +42,8 @@ struct Arguments {
 #[derive(Clone)]
 struct Sliced(u32);
 
+impl Site for Sliced {}
+
 impl Host for Sliced {
     fn planner<const TW: usize, const TH: usize>(
         &self,
@@ -56,10 +58,6 @@ impl Host for Sliced {
             _ => kind.build(setup),
         };
         planner.expect("the compiled size holds the world")
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

@@ -16,6 +16,7 @@ use std::rc::Rc;
 use bridge::SurveyorConfig;
 use clap::Parser;
 use host_sim::experiments::{Interval, mean};
+use host_sim::run::Site;
 use host_sim::run::heights::{Host, run, run_on};
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::terrain::Terrain;
@@ -71,6 +72,8 @@ struct Scribe<const T: usize> {
     own: Rc<RefCell<Decisions>>,
 }
 
+impl Site for Books {}
+
 impl Host for Books {
     fn surveyor<const T: usize>(
         &self,
@@ -92,10 +95,6 @@ impl Host for Books {
             recorded: self.recorded.as_ref().map(of_robot).map(Vec::into_iter),
             own: self.own.clone(),
         }))
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

@@ -1,7 +1,5 @@
 //! The planner on a chip, as the fleet sees it.
 
-use std::rc::Rc;
-
 use bridge::{Answer, Reply, Request, STAGED, State, grid_hash};
 use planner_core::map::Tile;
 use planner_core::radio::{
@@ -15,9 +13,8 @@ use planner_core::{
 };
 
 use super::dialogue::Dialogue;
-use super::emulator::Chip;
 use super::error::ChipError;
-use super::swarm::Book;
+use super::swarm::Swarm;
 use crate::measured::Call;
 use crate::planners::{PlannerKind, Setup};
 
@@ -42,12 +39,7 @@ macro_rules! held_by {
 }
 
 impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
-    pub(super) fn new(
-        chip: Result<Chip, ChipError>,
-        book: Rc<Book>,
-        kind: PlannerKind,
-        setup: Setup,
-    ) -> Self {
+    pub(super) fn new(swarm: &Swarm, kind: PlannerKind, setup: Setup) -> Self {
         let Setup {
             id, extent, start, ..
         } = setup;
@@ -64,7 +56,7 @@ impl<const TW: usize, const TH: usize> Proxy<TW, TH> {
         });
         let request = request.ok_or(ChipError::HostOnly(kind));
         Self {
-            dialogue: Dialogue::open(id, chip, book, request),
+            dialogue: swarm.start(id, request),
             grid: GridId::of(extent, link.origin_mm, link.cell_mm),
             map,
             state: State {

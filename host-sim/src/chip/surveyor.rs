@@ -1,7 +1,6 @@
 //! The planner of a flying robot on a chip, as the survey sees it.
 
 use std::mem::discriminant;
-use std::rc::Rc;
 
 use bridge::{
     LOOK, PatchRecord, Request, SurveyAnswer, SurveyReply, SurveyRequest, SurveyorConfig,
@@ -13,9 +12,7 @@ use planner_core::survey::{Knowledge, Pilot, Surveyor};
 use planner_core::{Action, Cell, Motion, Point, RobotId, Status, Wait};
 
 use super::dialogue::Dialogue;
-use super::emulator::Chip;
-use super::error::ChipError;
-use super::swarm::Book;
+use super::swarm::Swarm;
 use crate::measured::Call;
 
 /// Passes each verb on to the chip, and the chip's answer back, as a
@@ -49,8 +46,7 @@ impl<const T: usize> Pilot<T, T> for Mirror<T> {
 
 impl<const T: usize> SurveyProxy<T> {
     pub(super) fn new(
-        chip: Result<Chip, ChipError>,
-        book: Rc<Book>,
+        swarm: &Swarm,
         knowledge: Knowledge<T, T>,
         planner: SurveyorConfig,
         id: RobotId,
@@ -62,7 +58,7 @@ impl<const T: usize> SurveyProxy<T> {
         };
         let mirror = Mirror(knowledge);
         Self {
-            dialogue: Dialogue::open(id, chip, book, Ok(request)),
+            dialogue: swarm.start(id, Ok(request)),
             status: mirror.status(),
             mirror,
             waiting: None,

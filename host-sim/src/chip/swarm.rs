@@ -5,12 +5,13 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
 
-use bridge::{Cost, SurveyorConfig};
+use bridge::{Cost, Request, SurveyorConfig};
 use planner_core::sight::MAX_RADIUS;
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
 use planner_core::voxel_survey::Config;
 use planner_core::{AnyPlanner, Extent, ExtentError, RobotId};
 
+use super::dialogue::Dialogue;
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
 use super::proxy::Proxy;
@@ -20,7 +21,7 @@ use crate::measured::{Call, Measured};
 use crate::planners::{PlannerKind, Setup};
 use crate::record::grid::Trace;
 use crate::run::voxels::{self, Pilot};
-use crate::run::{self, Here, Host, Options, Outcome, heights};
+use crate::run::{self, Here, Host, Options, Outcome, Site, heights};
 use crate::scenario::ScenarioError;
 use crate::scenario::grid::Scenario;
 
@@ -96,6 +97,16 @@ impl Swarm {
         run::run_on(self, scenario, options)
     }
 
+    /// Starts the chip of a robot with the request that sets up its planner, if there is one.
+    pub(super) fn start(
+        &self,
+        robot: RobotId,
+        request: Result<Request<'_>, ChipError>,
+    ) -> Dialogue {
+        let chip = Chip::start(robot, self.machine, &self.image, self.limit);
+        Dialogue::open(robot, chip, self.book.clone(), request)
+    }
+
     /// What the chips took, when the run is over.
     ///
     /// # Errors
@@ -112,18 +123,19 @@ impl Swarm {
     }
 }
 
+impl Site for Swarm {
+    fn has_failed(&self) -> bool {
+        self.book.failure.get().is_some()
+    }
+}
+
 impl Host for Swarm {
     fn planner<const TW: usize, const TH: usize>(
         &self,
         kind: PlannerKind,
         setup: Setup,
     ) -> Box<dyn AnyPlanner<TW, TH>> {
-        let chip = Chip::start(setup.id, self.machine, &self.image, self.limit);
-        Box::new(Proxy::new(chip, self.book.clone(), kind, setup))
-    }
-
-    fn has_failed(&self) -> bool {
-        self.book.failure.get().is_some()
+        Box::new(Proxy::new(self, kind, setup))
     }
 }
 
@@ -136,13 +148,7 @@ impl voxels::Host for Swarm {
         levels: u8,
     ) -> Result<Box<dyn Pilot>, ExtentError> {
         let mirror = voxels::Host::pilot(&Here, config, id, extent, levels)?;
-        let chip = Chip::start(id, self.machine, &self.image, self.limit);
-        let book = self.book.clone();
-        Ok(Box::new(VoxelProxy::new(chip, book, mirror, config, id)))
-    }
-
-    fn has_failed(&self) -> bool {
-        self.book.failure.get().is_some()
+        Ok(Box::new(VoxelProxy::new(self, mirror, config, id)))
     }
 }
 
@@ -155,14 +161,6 @@ impl heights::Host for Swarm {
         id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError> {
         let knowledge = Knowledge::new(extent, limits, *planner.link(), id)?;
-        let chip = Chip::start(id, self.machine, &self.image, self.limit);
-        let book = self.book.clone();
-        Ok(Box::new(SurveyProxy::new(
-            chip, book, knowledge, planner, id,
-        )))
-    }
-
-    fn has_failed(&self) -> bool {
-        self.book.failure.get().is_some()
+        Ok(Box::new(SurveyProxy::new(self, knowledge, planner, id)))
     }
 }

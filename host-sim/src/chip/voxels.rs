@@ -1,7 +1,5 @@
 //! The planner among voxels on a chip, as the survey sees it.
 
-use std::rc::Rc;
-
 use bridge::{Request, VOXEL_LOOK, VoxelAnswer, VoxelReply, VoxelRequest, VoxelState, voxels_hash};
 use planner_core::radio::{FrameError, MAX_LEN};
 use planner_core::tile::TileIndex;
@@ -10,9 +8,7 @@ use planner_core::voxel_survey::Config;
 use planner_core::{Action, Extent, RobotId, Status};
 
 use super::dialogue::Dialogue;
-use super::emulator::Chip;
-use super::error::ChipError;
-use super::swarm::Book;
+use super::swarm::Swarm;
 use crate::measured::Call;
 use crate::run::voxels::Pilot;
 
@@ -29,13 +25,7 @@ pub(super) struct VoxelProxy {
 
 impl VoxelProxy {
     /// `mirror` is a planner like the one on the chip.
-    pub(super) fn new(
-        chip: Result<Chip, ChipError>,
-        book: Rc<Book>,
-        mirror: Box<dyn Pilot>,
-        planner: Config,
-        id: RobotId,
-    ) -> Self {
+    pub(super) fn new(swarm: &Swarm, mirror: Box<dyn Pilot>, planner: Config, id: RobotId) -> Self {
         let request = Request::Voxels {
             planner,
             id,
@@ -43,7 +33,7 @@ impl VoxelProxy {
             levels: mirror.levels(),
         };
         Self {
-            dialogue: Dialogue::open(id, chip, book, Ok(request)),
+            dialogue: swarm.start(id, Ok(request)),
             state: VoxelState {
                 status: mirror.status(),
                 heading: mirror.heading(),

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use planner_core::{AnyPlanner, Extent, RobotId};
 
-use super::{Outcome, Progress, Running, Stepping};
+use super::{Here, Outcome, Progress, Running, Site, Stepping};
 use crate::baselines::{Bmilrv, Marks};
 use crate::fleet::{Fleet, Rules};
 use crate::medium;
@@ -35,7 +35,7 @@ pub struct Options<'a> {
 }
 
 /// Where the planners of a run are.
-pub trait Host: Clone + 'static {
+pub trait Host: Site {
     /// The planner of a robot.
     ///
     /// # Panics
@@ -45,14 +45,7 @@ pub trait Host: Clone + 'static {
         kind: PlannerKind,
         setup: Setup,
     ) -> Box<dyn AnyPlanner<TW, TH>>;
-
-    /// Whether the run has to end because a planner is lost.
-    fn has_failed(&self) -> bool;
 }
-
-/// In this process.
-#[derive(Clone, Copy, Debug)]
-pub struct Here;
 
 impl Host for Here {
     fn planner<const TW: usize, const TH: usize>(
@@ -62,10 +55,6 @@ impl Host for Here {
     ) -> Box<dyn AnyPlanner<TW, TH>> {
         kind.build(setup)
             .expect("the compiled size holds the world")
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

@@ -6,9 +6,11 @@ mod claims;
 mod grid;
 pub mod heights;
 mod outcome;
+mod site;
 mod stepping;
 pub mod voxels;
 
-pub use grid::{Here, Host, Options, fleet, open, run, run_compiled, run_on};
+pub use grid::{Host, Options, fleet, open, run, run_compiled, run_on};
 pub use outcome::{Assignments, Outcome, Progress, RobotOutcome};
+pub use site::{Here, Site};
 pub use stepping::{Running, Seen, Stepping};

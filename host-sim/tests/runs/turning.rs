@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use host_sim::planners::{PlannerKind, Setup};
 use host_sim::robot::Deed;
-use host_sim::run::{self, Host};
+use host_sim::run::{self, Host, Site};
 use host_sim::scenario::grid::Scenario;
 use host_sim::world::{Family, World};
 use host_sim::{draw, record};
@@ -101,6 +101,8 @@ impl<const TW: usize, const TH: usize> Inspect<TW, TH> for LooksAround<TW, TH> {
 #[derive(Clone)]
 struct LookingAround;
 
+impl Site for LookingAround {}
+
 impl Host for LookingAround {
     fn planner<const TW: usize, const TH: usize>(
         &self,
@@ -113,10 +115,6 @@ impl Host for LookingAround {
             to_come: Direction::ALL.iter(),
             look: None,
         })
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

@@ -23,8 +23,7 @@ fn main() -> std::process::ExitCode {
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let timer = cortex_m::Peripherals::take().map(|chip| chip.SYST);
-    let stopwatch = firmware::Stopwatch::start(timer.expect("nobody else takes the timer"));
+    let stopwatch = firmware::Stopwatch::start();
     let measured = explorer::measure(&stopwatch)
         .and_then(|()| scan::measure(&stopwatch))
         .and_then(|()| cao::measure(&stopwatch))

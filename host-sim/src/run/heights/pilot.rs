@@ -7,11 +7,11 @@ use planner_core::survey::{Limits, SetupError, Surveyor};
 use planner_core::{Extent, RobotId};
 
 use crate::baselines::surveys::{Follower, Guide};
-use crate::run::Here;
+use crate::run::{Here, Site};
 use crate::scenario::heights::{Planner, Scenario};
 
 /// Where the planners of a survey are.
-pub trait Host: Clone + 'static {
+pub trait Host: Site {
     /// The planner of a robot.
     fn surveyor<const T: usize>(
         &self,
@@ -20,9 +20,6 @@ pub trait Host: Clone + 'static {
         planner: SurveyorConfig,
         id: RobotId,
     ) -> Result<Box<dyn Surveyor<T, T>>, SetupError>;
-
-    /// Whether the run has to end because a planner is lost.
-    fn has_failed(&self) -> bool;
 }
 
 impl Host for Here {
@@ -39,10 +36,6 @@ impl Host for Here {
                 Box::new(CoordinatedSurvey::new(config, id, extent)?)
             }
         })
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

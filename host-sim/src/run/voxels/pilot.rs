@@ -8,7 +8,7 @@ use planner_core::{Action, Extent, ExtentError, RobotId, Status};
 
 use super::follower::Follower;
 use crate::baselines::voxels::Body;
-use crate::run::Here;
+use crate::run::{Here, Site};
 use crate::scenario::voxels::Planner;
 use crate::scene::Scene;
 #[cfg(not(target_arch = "wasm32"))]
@@ -19,7 +19,7 @@ use crate::scene::{LARGEST, LEVELS};
 const MOST_ON_STACK: usize = 128 << 10;
 
 /// Where the planners of a survey among voxels are.
-pub trait Host: Clone + 'static {
+pub trait Host: Site {
     /// The planner of a robot in a box of `extent` columns and `levels` levels.
     ///
     /// # Errors
@@ -31,9 +31,6 @@ pub trait Host: Clone + 'static {
         extent: Extent,
         levels: u8,
     ) -> Result<Box<dyn Pilot>, ExtentError>;
-
-    /// Whether the run has to end because a planner is lost.
-    fn has_failed(&self) -> bool;
 }
 
 impl Host for Here {
@@ -45,10 +42,6 @@ impl Host for Here {
         levels: u8,
     ) -> Result<Box<dyn Pilot>, ExtentError> {
         of_core(config, id, extent, levels)
-    }
-
-    fn has_failed(&self) -> bool {
-        false
     }
 }
 

@@ -15,6 +15,8 @@ mod bytes;
 #[cfg(unix)]
 pub mod chip;
 mod coverage;
+#[cfg(test)]
+mod damage;
 mod dice;
 pub mod draw;
 mod excerpt;
@@ -31,6 +33,7 @@ pub mod measured;
 pub mod medium;
 mod mission;
 mod motion;
+pub mod options;
 mod pixels;
 pub mod planners;
 pub mod record;

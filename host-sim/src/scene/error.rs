@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::{LARGEST, LEVELS};
 use crate::bytes::Unread;
+use crate::options::OptionError;
 
 /// Most bytes of a file that is read.
 pub(super) const MOST_BYTES: u64 = 256 << 20;
@@ -58,17 +59,8 @@ pub enum SceneError {
          {suggested}: it spans {:.1}×{:.1}×{:.1} m", spans[0], spans[1], spans[2]
     )]
     NoVoxelSize { spans: [f64; 3], suggested: f64 },
-    #[error("{option} does not apply to {what}; leave it out")]
-    DoesNotApply {
-        option: &'static str,
-        what: &'static str,
-    },
-    #[error("{option} {found}: expected {expected}")]
-    Setting {
-        option: &'static str,
-        found: f64,
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    Option(#[from] OptionError),
     #[error(
         "--free rays: the file does not say where its points were seen from; expected a PCD \
          file with a VIEWPOINT; or give --free rest"

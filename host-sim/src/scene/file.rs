@@ -12,6 +12,7 @@ use super::ply::{from_ply, is_ply};
 use super::stl::{from_stl, is_stl};
 use super::{Frame, Free, LARGEST, LEVELS, Scene, SceneError};
 use crate::bytes;
+use crate::options::{OptionError, none_given};
 
 /// How far from a whole number of the file's voxels a side may be, as a share of one.
 const SLACK: f64 = 1e-6;
@@ -146,18 +147,12 @@ impl Scene {
 
 /// # Errors
 /// An option that a tree leaves no room for: it says itself what is free.
-fn check_for_tree(options: &SceneOptions) -> Result<(), SceneError> {
+fn check_for_tree(options: &SceneOptions) -> Result<(), OptionError> {
     let given = [
         ("--free", options.free.is_some()),
         ("--margin", options.margin.is_some()),
     ];
-    match given.into_iter().find(|(_, given)| *given) {
-        None => Ok(()),
-        Some((option, _)) => Err(SceneError::DoesNotApply {
-            option,
-            what: "an OctoMap tree, which says itself what is free",
-        }),
-    }
+    none_given(given, "an OctoMap tree, which says itself what is free")
 }
 
 /// Voxels of the unknown about all that is known: nobody flies along the end of a scan.

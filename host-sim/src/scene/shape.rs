@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::error::FARTHEST;
 use super::mesh::touches;
 use super::{Frame, Scene, SceneError, SceneOptions};
+use crate::options::OptionError;
 
 /// A place in metres.
 pub(super) type Point = [f64; 3];
@@ -68,16 +69,18 @@ impl Shape {
                 let viewpoint = viewpoint.filter(is_finite).ok_or(SceneError::NoViewpoint)?;
                 match options.margin {
                     None => Ok(Some(viewpoint)),
-                    Some(_) => Err(SceneError::DoesNotApply {
+                    Some(_) => Err(OptionError::DoesNotApply {
                         option: "--margin",
                         what: "--free rays",
-                    }),
+                    }
+                    .into()),
                 }
             }
-            (Self::Mesh(_), Some(Free::Rays)) => Err(SceneError::DoesNotApply {
+            (Self::Mesh(_), Some(Free::Rays)) => Err(OptionError::DoesNotApply {
                 option: "--free rays",
                 what: "a mesh, which nobody looked at",
-            }),
+            }
+            .into()),
         }
     }
 
@@ -205,11 +208,12 @@ fn voxel_size(asked: Option<f64>, low: Point, high: Point) -> Result<f64, SceneE
     let longest = spans.iter().copied().fold(0.0, f64::max);
     match asked {
         Some(asked) if asked > 0.0 && asked.is_finite() => Ok(asked),
-        Some(found) => Err(SceneError::Setting {
+        Some(found) => Err(OptionError::Setting {
             option: "--voxel-size",
             found,
             expected: "more than 0 metres",
-        }),
+        }
+        .into()),
         None => Err(SceneError::NoVoxelSize {
             spans,
             suggested: round(longest / 100.0),
@@ -231,11 +235,11 @@ fn round(metres: f64) -> f64 {
 }
 
 /// Free voxels about a bounding box.
-fn margin(metres: Option<f64>, voxel_size: f64) -> Result<f64, SceneError> {
+fn margin(metres: Option<f64>, voxel_size: f64) -> Result<f64, OptionError> {
     let metres = metres.unwrap_or(0.0);
     match (0.0..=WIDEST).contains(&metres) {
         true => Ok((metres / voxel_size).ceil()),
-        false => Err(SceneError::Setting {
+        false => Err(OptionError::Setting {
             option: "--margin",
             found: metres,
             expected: "0 to 1000 metres",

@@ -16,6 +16,7 @@ use super::grid::{from_grid, is_grid};
 use super::relief::from_metres;
 use super::{Scale, Terrain, TerrainOptions};
 use crate::bytes::{self, Unread};
+use crate::options::OptionError;
 use crate::pixels;
 use crate::scene::octree::{Cube, OcTree};
 
@@ -70,17 +71,8 @@ pub enum TerrainError {
     Tiff(String),
     #[error("does not say how wide its cells are; give --metres-per-cell M")]
     NoCell,
-    #[error("{option} does not apply to {what}; leave it out")]
-    DoesNotApply {
-        option: &'static str,
-        what: &'static str,
-    },
-    #[error("{option} {found}: expected {expected}")]
-    Setting {
-        option: &'static str,
-        found: f64,
-        expected: &'static str,
-    },
+    #[error(transparent)]
+    Option(#[from] OptionError),
     #[error("line {line} of the ASCII grid: expected {expected}")]
     Grid { line: usize, expected: String },
     #[error(

@@ -10,6 +10,7 @@ use tiff::tags::Tag;
 use super::file::{TerrainError, fitting};
 use super::relief::from_metres;
 use super::{Terrain, TerrainOptions};
+use crate::options::OptionError;
 
 /// Most bytes of the pixels of a file: 512×512 doubles, and tiles beyond its edges.
 const MOST_BYTES: usize = 16 << 20;
@@ -106,10 +107,11 @@ fn cell(file: &mut Decoder<Cursor<&[u8]>>, options: &TerrainOptions) -> Result<f
     match (scale.as_deref(), options.metres_per_cell) {
         (None, Some(cell)) => Ok(cell),
         (None, None) => Err(TerrainError::NoCell),
-        (Some(_), Some(_)) => Err(TerrainError::DoesNotApply {
+        (Some(_), Some(_)) => Err(OptionError::DoesNotApply {
             option: "--metres-per-cell",
             what: "the file, which says how wide its cells are",
-        }),
+        }
+        .into()),
         (Some(&[x, y, ..]), None) if x > 0.0 && x.is_finite() => {
             match (y.abs() - x).abs() <= SLACK * x {
                 true => Ok(x),

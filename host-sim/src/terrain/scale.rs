@@ -3,7 +3,7 @@
 use planner_core::Point;
 use serde::{Deserialize, Serialize};
 
-use super::TerrainError;
+use crate::options::{OptionError, none_given};
 
 /// Where columns lie in metres: x east, y north, z up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -47,9 +47,9 @@ pub struct TerrainOptions {
 impl TerrainOptions {
     /// # Errors
     /// An option that is no length, or out of its range.
-    pub fn check(&self) -> Result<(), TerrainError> {
+    pub fn check(&self) -> Result<(), OptionError> {
         let of = |option, found: Option<f64>| match found {
-            Some(found) if !(1e-3..=1e5).contains(&found) => Err(TerrainError::Setting {
+            Some(found) if !(1e-3..=1e5).contains(&found) => Err(OptionError::Setting {
                 option,
                 found,
                 expected: "0.001 to 100000 metres",
@@ -62,15 +62,12 @@ impl TerrainOptions {
 
     /// # Errors
     /// Something is said to something that says it itself.
-    pub(super) fn check_none(&self, what: &'static str) -> Result<(), TerrainError> {
+    pub(super) fn check_none(&self, what: &'static str) -> Result<(), OptionError> {
         let given = [
             ("--metres-per-cell", self.metres_per_cell.is_some()),
             ("--metres-per-level", self.metres_per_level.is_some()),
         ];
-        match given.into_iter().find(|(_, given)| *given) {
-            None => Ok(()),
-            Some((option, _)) => Err(TerrainError::DoesNotApply { option, what }),
-        }
+        none_given(given, what)
     }
 }
 

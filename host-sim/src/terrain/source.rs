@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use super::{Scale, Terrain, TerrainError, TerrainOptions};
+use super::{Scale, Terrain, TerrainOptions};
+use crate::options::OptionError;
 use crate::scene::Scene;
 
 /// Where a terrain comes from.
@@ -63,7 +64,7 @@ impl TerrainSource {
         options.check().map_err(|error| error.to_string())?;
         let drawn = |terrain: Terrain| match options.metres_per_level {
             None => Ok(terrain.scaled(options.metres_per_cell.map(Scale::picture))),
-            Some(_) => Err(TerrainError::DoesNotApply {
+            Some(_) => Err(OptionError::DoesNotApply {
                 option: "--metres-per-level",
                 what: "a terrain drawn by a seed",
             }

@@ -328,6 +328,7 @@ mod tests {
     use planner_core::volume::Field;
 
     use super::*;
+    use crate::damage::assert_refused;
     use crate::run::voxels::{Simulation, run};
 
     fn trace(max_ticks: u32) -> VoxelTrace {
@@ -351,21 +352,20 @@ mod tests {
             (&trace.headings, &trace.found)
         );
         assert_eq!(read.scenario, scenario);
-        for (from, to, reason) in [
-            ("\"headings\":[\"0", "\"headings\":[\"8", "digits 0 to 7"),
-            ("\"headings\":[\"0", "\"headings\":[\"", "each of 81 steps"),
-            (
-                "\"headings\":[\"0",
-                "\"headings\":[\"0\",\"0",
-                "3 rows of headings",
-            ),
-        ] {
-            let damaged = text.replacen(from, to, 1);
-            let error = VoxelTrace::read(damaged.as_bytes())
-                .unwrap_err()
-                .to_string();
-            assert!(error.contains(reason), "{error}");
-        }
+        let error = |bytes: &[u8]| VoxelTrace::read(bytes).unwrap_err().to_string();
+        assert_refused(
+            &text,
+            error,
+            &[
+                ("\"headings\":[\"0", "\"headings\":[\"8", "digits 0 to 7"),
+                ("\"headings\":[\"0", "\"headings\":[\"", "each of 81 steps"),
+                (
+                    "\"headings\":[\"0",
+                    "\"headings\":[\"0\",\"0",
+                    "3 rows of headings",
+                ),
+            ],
+        );
     }
 
     fn file(trace: &VoxelTrace) -> String {
@@ -408,25 +408,26 @@ mod tests {
     #[test]
     fn a_damaged_file_is_an_error_that_says_where() {
         let text = file(&trace(20));
-        let error = |text: &str| VoxelTrace::read(text.as_bytes()).unwrap_err().to_string();
-        let cut = &text[..text[..text.len() - 1].rfind('\n').unwrap()];
+        let error = |bytes: &[u8]| VoxelTrace::read(bytes).unwrap_err().to_string();
+        let cut = &text.as_bytes()[..text[..text.len() - 1].rfind('\n').unwrap()];
         assert!(error(cut).contains("cut off"), "{}", error(cut));
-        for (from, to, reason) in [
-            ("\n0,1,", "\n0,one,", "line 4"),
-            ("\n0,1,", "\n0,2,", "digest"),
-            ("\"version\":3", "\"version\":9", "version 9"),
-            ("\"robots\":2", "\"robots\":0", "--robots 0"),
-            ("\"robots\":2", "\"robots\":4000000000", "1 to 255"),
-            ("\"loss\":0.3", "\"loss\":3.0", "--loss 3"),
-            ("\"range\":6", "\"range\":1", "2 to 12"),
-            ("\"levels\":[[\"#", "\"levels\":[[\"!", "neither"),
-            ("\"robots\":2", "\"robots\":5", "5 robots"),
-            ("\"starts\":[[2,", "\"starts\":[[-2,", "starts outside"),
-            ("\"range\":6", "\"range\":200", "range"),
-            ("\"levels\":[[\"", "\"levels\":[[\"#", "levels of the scene"),
-        ] {
-            let error = error(&text.replacen(from, to, 1));
-            assert!(error.contains(reason), "{error}");
-        }
+        assert_refused(
+            &text,
+            error,
+            &[
+                ("\n0,1,", "\n0,one,", "line 4"),
+                ("\n0,1,", "\n0,2,", "digest"),
+                ("\"version\":3", "\"version\":9", "version 9"),
+                ("\"robots\":2", "\"robots\":0", "--robots 0"),
+                ("\"robots\":2", "\"robots\":4000000000", "1 to 255"),
+                ("\"loss\":0.3", "\"loss\":3.0", "--loss 3"),
+                ("\"range\":6", "\"range\":1", "2 to 12"),
+                ("\"levels\":[[\"#", "\"levels\":[[\"!", "neither"),
+                ("\"robots\":2", "\"robots\":5", "5 robots"),
+                ("\"starts\":[[2,", "\"starts\":[[-2,", "starts outside"),
+                ("\"range\":6", "\"range\":200", "range"),
+                ("\"levels\":[[\"", "\"levels\":[[\"#", "levels of the scene"),
+            ],
+        );
     }
 }

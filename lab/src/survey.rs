@@ -25,7 +25,7 @@ use voxels::Voxels;
 pub use eye::{SHAPE, Turn};
 pub use flight::{Drone, Layers};
 pub use rival::Rival;
-pub use setup::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
+pub use setup::{ALTITUDES, CEILINGS, CLEARANCES, RANGES, ROBOTS, SurveySetup};
 
 /// How near to a drone a click means it, in points.
 const NEAR: f32 = 14.0;
@@ -127,6 +127,11 @@ impl SurveyScene {
     /// What should never happen, in words, and how many flights did it.
     pub fn violations(&self) -> (&'static str, u32) {
         self.flight.violations()
+    }
+
+    /// What befell drones that did nothing wrong, in sentences.
+    pub fn mishaps(&self) -> Vec<String> {
+        self.flight.mishaps()
     }
 
     /// What a drone does at the shown step, row by row, and whether it is alive and whether
@@ -347,7 +352,7 @@ mod tests {
     use host_sim::run::{heights, voxels};
     use host_sim::terrain::TerrainSource;
 
-    use super::setup::tests::{compared, filmed, homing, town, unusual};
+    use super::setup::tests::{all, filmed, unusual};
     use super::*;
 
     fn flown(setup: SurveySetup) -> SurveyScene {
@@ -363,11 +368,7 @@ mod tests {
 
     #[test]
     fn a_survey_on_screen_is_the_survey_of_host_sim() {
-        let hills = SurveySetup {
-            size: 24,
-            ..SurveySetup::default()
-        };
-        for setup in [hills, unusual(), town(), filmed(), compared(), homing()] {
+        for setup in all() {
             let scene = flown(setup.clone());
             let digest = match setup.terrain.scene(setup.size) {
                 Some(scene) => voxels::run(&scene, &setup.voxel_scenario())
@@ -408,7 +409,7 @@ mod tests {
 
     #[test]
     fn a_saved_trace_shows_what_was_flown() {
-        for setup in [unusual(), town(), filmed(), compared(), homing()] {
+        for setup in all() {
             let flown = flown(setup.clone());
             let (_, file) = flown.export(Export::Trace).unwrap();
             let mut replay = match setup.terrain {
@@ -423,6 +424,7 @@ mod tests {
             assert_eq!(replay.verdict(), Verdict::Complete);
             assert_eq!(replay.digest(), flown.digest());
             assert_eq!(replay.violations(), flown.violations());
+            assert_eq!(replay.mishaps(), flown.mishaps());
             for (of, name) in Series::ALL {
                 assert_eq!(replay.curve(of), flown.curve(of), "{name}");
             }

@@ -284,17 +284,9 @@ impl Survey {
         self.conditions.clone().set(conditions)
     }
 
-    /// What robots see that feel where their body comes to next.
     fn field(&self, clearance: u8) -> Field {
         let sensor = self.sensor.unwrap_or_default();
-        let field = sensor.field(self.fov.unwrap_or_default());
-        Field {
-            near: match field.is_whole() {
-                true => field.near,
-                false => field.near.max(clearance + 1),
-            },
-            ..field
-        }
+        sensor.field_for(self.fov.unwrap_or_default(), clearance)
     }
 
     /// # Errors

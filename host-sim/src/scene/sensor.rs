@@ -101,6 +101,19 @@ impl Sensor {
         }
     }
 
+    /// Its field on robots whose bodies reach so many voxels beyond the one of their middle: they
+    /// feel where that comes to next.
+    pub fn field_for(self, fov: Fov, clearance: u8) -> Field {
+        let field = self.field(fov);
+        Field {
+            near: match field.is_whole() {
+                true => field.near,
+                false => field.near.max(clearance + 1),
+            },
+            ..field
+        }
+    }
+
     /// The sensor with this field, as far as bodies need to feel, and a camera's image; `None`: none of
     /// these has it.
     pub fn of(field: Field) -> Option<(Self, Fov)> {

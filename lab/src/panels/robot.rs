@@ -142,17 +142,19 @@ impl App {
 }
 
 impl App {
-    /// Whether drones flew where they should not have, of each survey.
+    /// Whether drones flew where they should not have, and what befell them, of each survey.
     pub(super) fn violations(&self, ui: &mut Ui) {
         for survey in &self.surveys {
             let told = match survey.violations() {
                 (wrong, 0) => format!("No flight was {wrong}."),
                 (wrong, flights) => format!("{flights} flights were {wrong}."),
             };
-            ui.label(match self.surveys.len() {
-                1 => told,
-                _ => format!("{}: {told}", survey.title()),
-            });
+            for told in std::iter::once(told).chain(survey.mishaps()) {
+                ui.label(match self.surveys.len() {
+                    1 => told,
+                    _ => format!("{}: {told}", survey.title()),
+                });
+            }
         }
     }
 }

@@ -5,13 +5,13 @@ use std::mem::discriminant;
 use clap::ValueEnum;
 use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
 use host_sim::scenario::heights::Planner;
-use host_sim::scenario::{Mission, voxels};
+use host_sim::scenario::{Mission, Wind, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
 use super::parts::{choice, events, files, medium, number, rival, slider, title};
 use crate::app::App;
-use crate::survey::{ALTITUDES, CEILINGS, RANGES, ROBOTS, SurveySetup};
+use crate::survey::{ALTITUDES, CEILINGS, CLEARANCES, RANGES, ROBOTS, SurveySetup};
 use crate::view::Tool;
 
 impl App {
@@ -36,7 +36,9 @@ impl App {
         }
         sensor(ui, &mut setup);
         slider(ui, "sensor range", &mut setup.range, RANGES);
-        if !setup.is_of_voxels() {
+        if setup.is_of_voxels() {
+            slider(ui, "clearance", &mut setup.clearance, CLEARANCES);
+        } else {
             slider(ui, "least altitude", &mut setup.min_altitude, ALTITUDES);
             slider(ui, "ceiling", &mut setup.ceiling, CEILINGS);
         }
@@ -48,9 +50,10 @@ impl App {
                 DragValue::new(&mut setup.conditions.seed),
             );
         });
-        if !setup.is_of_voxels() {
+        if setup.has_mission() {
             mission(ui, &mut setup.conditions.mission);
         }
+        wind(ui, &mut setup.conditions.wind);
         events(ui, &mut setup.conditions.faults);
         title(ui, "Radio");
         medium(ui, &mut setup.conditions);
@@ -112,6 +115,12 @@ fn mission(ui: &mut Ui, mission: &mut Mission) {
         .smallest_positive(10.0)
         .clamping(SliderClamping::Edits);
     ui.add(energy.text("energy (0: no limit)"));
+}
+
+/// How far off gusts blow the drones.
+fn wind(ui: &mut Ui, wind: &mut Wind) {
+    let deviation = Slider::new(&mut wind.deviation, 0.0..=1.0).max_decimals(2);
+    ui.add(deviation.text("wind (cells a step)"));
 }
 
 /// A kind of place, drawn by a seed.

@@ -58,6 +58,9 @@ pub(super) trait Flight {
     /// What should never happen, in words, and how many flights did it.
     fn violations(&self) -> (&'static str, u32);
 
+    /// What befell drones that did nothing wrong, in sentences.
+    fn mishaps(&self) -> Vec<String>;
+
     /// What each step took.
     fn costs(&self) -> Vec<Cost>;
 

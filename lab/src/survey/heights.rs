@@ -113,6 +113,15 @@ impl Flight for Heights {
         ("too low, too high or too near to another", count)
     }
 
+    fn mishaps(&self) -> Vec<String> {
+        let trace = self.trace();
+        let is_windy = !trace.scenario.conditions.wind.is_none();
+        let contacts = trace.contacts;
+        let ends =
+            || format!("The wind ended {contacts} steps on the ground or too near to another.");
+        is_windy.then(ends).into_iter().collect()
+    }
+
     fn costs(&self) -> Vec<Cost> {
         Cost::of(&self.trace().records)
     }

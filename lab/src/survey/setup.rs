@@ -11,6 +11,7 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{Conditions, MediumKind, Mission, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
+use planner_core::volume::MAX_CLEARANCE;
 
 /// Numbers of drones.
 pub const ROBOTS: RangeInclusive<u8> = 1..=32;
@@ -20,6 +21,8 @@ pub const ALTITUDES: RangeInclusive<f32> = 1.0..=6.0;
 pub const CEILINGS: RangeInclusive<f32> = 20.0..=60.0;
 /// Sensor ranges in cells.
 pub const RANGES: RangeInclusive<u8> = 2..=12;
+/// Voxels that bodies reach beyond the one of their middle.
+pub const CLEARANCES: RangeInclusive<u8> = 0..=MAX_CLEARANCE;
 
 /// What is flown.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +43,8 @@ pub struct SurveySetup {
     pub sensor: Sensor,
     /// The image of a camera.
     pub fov: Fov,
+    /// Voxels that the drones' bodies reach beyond the one of their middle.
+    pub clearance: u8,
     /// Least altitude over ground, in cells.
     pub min_altitude: f32,
     /// Greatest height, in cells.
@@ -61,6 +66,7 @@ impl Default for SurveySetup {
             range: 8,
             sensor: Sensor::default(),
             fov: Fov::default(),
+            clearance: 1,
             min_altitude: 2.0,
             ceiling: 40.0,
             conditions: Conditions {
@@ -88,7 +94,8 @@ impl SurveySetup {
         voxels::Scenario {
             planner: self.voxel_planner,
             range: self.range,
-            field: self.sensor.field(self.fov),
+            clearance: self.clearance,
+            field: self.sensor.field_for(self.fov, self.clearance),
             conditions: self.conditions.clone(),
             ..voxels::Scenario::new(self.robots.into(), 0)
         }
@@ -133,6 +140,7 @@ impl SurveySetup {
             range: scenario.range,
             sensor,
             fov,
+            clearance: scenario.clearance,
             conditions: scenario.conditions.clone(),
             ..Self::default()
         }
@@ -182,6 +190,12 @@ impl SurveySetup {
         if self.sensor != Sensor::Camera {
             self.fov = Fov::default();
         }
+        if self.is_of_voxels() {
+            // A body has to see where it comes to next.
+            self.range = self.range.max(self.clearance + 1);
+        } else {
+            self.clearance = Self::default().clearance;
+        }
         if !self.has_mission() {
             self.conditions.mission = Mission::default();
         }
@@ -212,6 +226,7 @@ impl SurveySetup {
         say(is_of_voxels && planner != first, "planner", planner, first);
         say(!is_of_voxels, "planner", &self.planner, &usual.planner);
         say(true, "robots", &self.robots, &usual.robots);
+        say(is_of_voxels, "clearance", &self.clearance, &usual.clearance);
         say(true, "range", &self.range, &usual.range);
         say(self.has_sensors(), "sensor", &self.sensor, &usual.sensor);
         let has_image = self.has_sensors() && self.sensor == Sensor::Camera;
@@ -286,6 +301,7 @@ impl SurveySetup {
             "planner" => chosen(value, &mut self.planner),
             "robots" => within(value, ROBOTS, &mut self.robots),
             "range" => within(value, RANGES, &mut self.range),
+            "clearance" if is_of_voxels => within(value, CLEARANCES, &mut self.clearance),
             "sensor" if is_of_voxels => chosen(value, &mut self.sensor),
             "fov" if is_of_voxels => {
                 self.fov = value.parse().ok()?;
@@ -352,6 +368,8 @@ fn within<T: FromStr + PartialOrd>(
 
 #[cfg(test)]
 pub(super) mod tests {
+    use host_sim::scenario::Wind;
+
     use super::*;
 
     fn conditions() -> Conditions {
@@ -386,17 +404,40 @@ pub(super) mod tests {
         }
     }
 
-    /// Home, in time.
-    pub(in crate::survey) fn homing() -> SurveySetup {
-        SurveySetup {
-            conditions: Conditions {
-                mission: Mission {
-                    come_home: true,
-                    energy: 2000,
-                },
-                ..conditions()
+    /// Home, in time, through wind.
+    fn homing() -> Conditions {
+        Conditions {
+            mission: Mission {
+                come_home: true,
+                energy: 2000,
             },
+            wind: Wind { deviation: 0.2 },
+            ..conditions()
+        }
+    }
+
+    /// The same over heights.
+    pub(in crate::survey) fn blown() -> SurveySetup {
+        SurveySetup {
+            conditions: homing(),
             ..unusual()
+        }
+    }
+
+    /// The same among voxels, by drones that are as small as they can be.
+    pub(in crate::survey) fn blown_about_rooms() -> SurveySetup {
+        SurveySetup {
+            clearance: 0,
+            conditions: homing(),
+            ..town()
+        }
+    }
+
+    /// Wide drones that see ahead.
+    fn wide() -> SurveySetup {
+        SurveySetup {
+            clearance: 2,
+            ..filmed()
         }
     }
 
@@ -416,16 +457,27 @@ pub(super) mod tests {
         }
     }
 
-    #[test]
-    fn an_address_carries_everything() {
-        for setup in [
-            SurveySetup::default(),
+    /// One of each kind.
+    pub(in crate::survey) fn all() -> [SurveySetup; 8] {
+        let hills = SurveySetup {
+            size: 24,
+            ..SurveySetup::default()
+        };
+        [
+            hills,
             unusual(),
+            blown(),
             town(),
             filmed(),
+            wide(),
             compared(),
-            homing(),
-        ] {
+            blown_about_rooms(),
+        ]
+    }
+
+    #[test]
+    fn an_address_carries_everything() {
+        for setup in all() {
             let address = setup.address();
             assert!(SurveySetup::is_meant(&address));
             assert_eq!(SurveySetup::from_address(&address), Ok(setup));
@@ -459,6 +511,8 @@ pub(super) mod tests {
             ("town:1&planner=greedy", "sensor=camera"),
             ("urban:1", "planner=voxel-survey"),
             ("urban:1", "sensor=camera"),
+            ("urban:1", "clearance=0"),
+            ("town:1", "clearance=4"),
         ] {
             let address = format!("{part}&terrain={terrain}");
             let error = SurveySetup::from_address(&address).unwrap_err();
@@ -475,26 +529,32 @@ pub(super) mod tests {
         );
         assert_eq!(
             town().command(),
-            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
-             --sensor all-round --medium ideal --loss 0.25 --seed 7"
+            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --clearance 1 \
+             --range 6 --sensor all-round --medium ideal --loss 0.25 --seed 7"
         );
         assert_eq!(
             filmed().command(),
-            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --range 6 \
-             --sensor camera --fov 100x60 --medium ideal --loss 0.25 --seed 7"
+            "cargo run --release -- survey --terrain town:2 --size 24 --robots 3 --clearance 1 \
+             --range 6 --sensor camera --fov 100x60 --medium ideal --loss 0.25 --seed 7"
         );
-        let command = homing().command();
-        assert!(command.ends_with(" --come-home --energy 2000"), "{command}");
+        for (setup, body) in [(blown(), ""), (blown_about_rooms(), " --clearance 0")] {
+            let command = setup.command();
+            assert!(command.contains(body), "{command}");
+            assert!(
+                command.ends_with(" --come-home --energy 2000 --wind 0.2"),
+                "{command}"
+            );
+        }
         let elsewhere = SurveySetup {
             terrain: TerrainSource::Town(2),
             voxel_planner: voxels::Planner::Greedy,
-            ..homing()
+            ..blown()
         };
         assert!(!elsewhere.tidied().command().contains("--energy"));
         assert_eq!(
             compared().command(),
             "cargo run --release -- survey --terrain town:2 --size 24 --planner greedy --robots 3 \
-             --range 6 --medium ideal --loss 0.25 --seed 7"
+             --clearance 1 --range 6 --medium ideal --loss 0.25 --seed 7"
         );
     }
 }

@@ -118,6 +118,14 @@ impl Flight for Voxels {
         ("beside or into something", count)
     }
 
+    fn mishaps(&self) -> Vec<String> {
+        let trace = self.trace();
+        let is_windy = !trace.scenario.conditions.wind.is_none();
+        let contacts = trace.contacts;
+        let ends = || format!("The wind ended {contacts} steps beside or in something.");
+        is_windy.then(ends).into_iter().collect()
+    }
+
     fn costs(&self) -> Vec<Cost> {
         Cost::of(&self.trace().records)
     }

@@ -102,6 +102,15 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
     swarm.finish().unwrap();
     assert_eq!(on_page(&browser, &page, address), here, "{address}");
     assert_eq!(chips.digest(), here, "{address}");
+    for address in [
+        "terrain=urban:3&size=40&robots=3&wind=0.2&come-home",
+        "terrain=town:2&size=24&robots=3&clearance=2&range=6&sensor=camera&fov=100x60",
+        "terrain=town:2&size=24&planner=greedy&clearance=0&range=6&wind=0.2",
+    ] {
+        let setup = SurveySetup::from_address(address).unwrap();
+        let here = by_command(&setup.command());
+        assert_eq!(on_page(&browser, &page, address), here, "{address}");
+    }
     assert_eq!(browser.console(), [""; 0]);
 }
 

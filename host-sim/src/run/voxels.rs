@@ -264,7 +264,12 @@ impl Simulation {
     }
 
     /// What happened.
-    pub fn finish(mut self) -> VoxelTrace {
+    pub fn finish(self) -> VoxelTrace {
+        self.trace
+    }
+
+    /// See [`VoxelTrace::false_claims`].
+    fn false_claims(&self) -> u32 {
         let claims = |robot: &&Robot, stop: &Option<Stop<Voxel>>| {
             robot.alive && stop.is_some_and(|stop| stop.is_complete())
         };
@@ -278,8 +283,7 @@ impl Simulation {
             let mut voxels = self.scene.voxels();
             voxels.any(|voxel| is_left(robot, voxel))
         });
-        self.trace.false_claims = wrong.count() as u32;
-        self.trace
+        wrong.count() as u32
     }
 
     /// One step of the fleet; false if the run is over, and then nothing changes any more.
@@ -303,6 +307,7 @@ impl Simulation {
             || (self.robots.iter()).any(|robot| robot.alive && !robot.stopped);
         self.trace.all_stopped = !going;
         if !going || self.is_last() {
+            self.trace.false_claims = self.false_claims();
             return false;
         }
         for (robot, way) in self.robots.iter().zip(&mut self.trace.ways) {

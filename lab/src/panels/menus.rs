@@ -10,7 +10,7 @@ use planner_core::Extent;
 use planner_core::explorer::MAX_CLEARANCE;
 use planner_core::sight::{MAX_LONG_RADIUS, MAX_RADIUS};
 
-use super::parts::{choice, events, files, medium, number, rival, title};
+use super::parts::{choice, events, files, medium, number, rival, share, title};
 use crate::app::App;
 use crate::ground::ALL_TICKS;
 use crate::maps::Map;
@@ -243,19 +243,15 @@ fn robots(ui: &mut Ui, setup: &mut Setup) {
 
 /// Looks that err, poses that slip, people and doors.
 fn trouble(ui: &mut Ui, trouble: &mut Trouble) {
-    let share = |value| {
-        let slider = Slider::new(value, 0.0..=1.0).logarithmic(true);
-        slider.smallest_positive(0.001).max_decimals(3)
-    };
-    ui.add(share(&mut trouble.false_walls).text("false walls"));
-    ui.add(share(&mut trouble.false_frees).text("false free cells"));
+    share(ui, "false walls", &mut trouble.false_walls);
+    share(ui, "false free cells", &mut trouble.false_frees);
     choice(
         ui,
         "errors",
         &mut trouble.error_kind,
         ErrorKind::value_variants(),
     );
-    ui.add(share(&mut trouble.misplaced).text("misplaced looks"));
+    share(ui, "misplaced looks", &mut trouble.misplaced);
     ui.add(Slider::new(&mut trouble.drift, 0..=500).text("drift every (0: never)"));
     ui.add(Slider::new(&mut trouble.people, 0..=20).text("people"));
     ui.add(Slider::new(&mut trouble.doors, 0..=20).text("doors"));

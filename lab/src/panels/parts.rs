@@ -27,6 +27,13 @@ pub(super) fn slider<T: Numeric>(ui: &mut Ui, name: &str, value: &mut T, range: 
     ui.add(slider.text(name));
 }
 
+/// A share from 0 to 1, of which small ones matter.
+pub(super) fn share(ui: &mut Ui, name: &str, value: &mut f64) {
+    let slider = Slider::new(value, 0.0..=1.0).logarithmic(true);
+    let slider = slider.smallest_positive(0.001).max_decimals(3);
+    ui.add(slider.text(name));
+}
+
 /// One of several.
 pub(super) fn choice<T: ValueEnum + PartialEq + Copy + ToString>(
     ui: &mut Ui,

@@ -3,13 +3,13 @@
 use std::mem::discriminant;
 
 use clap::ValueEnum;
-use egui::{DragValue, RichText, Slider, SliderClamping, Ui};
+use egui::{CollapsingHeader, DragValue, RichText, Slider, SliderClamping, Ui};
 use host_sim::scenario::heights::Planner;
-use host_sim::scenario::{Mission, Wind, voxels};
+use host_sim::scenario::{Conditions, Mission, Preset, Wind, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 
-use super::parts::{choice, events, files, medium, number, rival, slider, title};
+use super::parts::{choice, events, files, medium, number, rival, share, slider, title};
 use crate::app::App;
 use crate::survey::{ALTITUDES, CEILINGS, CLEARANCES, RANGES, ROBOTS, SurveySetup};
 use crate::view::Tool;
@@ -54,6 +54,11 @@ impl App {
             mission(ui, &mut setup.conditions.mission);
         }
         wind(ui, &mut setup.conditions.wind);
+        if setup.has_errors() {
+            CollapsingHeader::new("Looks that err")
+                .default_open(!setup.conditions.trouble.is_none())
+                .show(ui, |ui| errors(ui, &mut setup.conditions));
+        }
         events(ui, &mut setup.conditions.faults);
         title(ui, "Radio");
         medium(ui, &mut setup.conditions);
@@ -121,6 +126,15 @@ fn mission(ui: &mut Ui, mission: &mut Mission) {
 fn wind(ui: &mut Ui, wind: &mut Wind) {
     let deviation = Slider::new(&mut wind.deviation, 0.0..=1.0).max_decimals(2);
     ui.add(deviation.text("wind (cells a step)"));
+}
+
+/// How often looks at voxels are wrong, and what the drones expect.
+fn errors(ui: &mut Ui, conditions: &mut Conditions) {
+    let trouble = &mut conditions.trouble;
+    share(ui, "false walls", &mut trouble.false_walls);
+    share(ui, "false free voxels", &mut trouble.false_frees);
+    let presets = [Preset::Truthful, Preset::Rangers];
+    choice(ui, "sensor taken for", &mut conditions.preset, &presets);
 }
 
 /// A kind of place, drawn by a seed.

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use host_sim::record::heights::Trace;
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::scenario::heights::{Planner, Scenario};
-use host_sim::scenario::{Conditions, MediumKind, Mission, voxels};
+use host_sim::scenario::{Conditions, MediumKind, Mission, Preset, Trouble, voxels};
 use host_sim::scene::{Fov, Sensor};
 use host_sim::terrain::TerrainSource;
 use planner_core::volume::MAX_CLEARANCE;
@@ -181,6 +181,19 @@ impl SurveySetup {
         !self.is_of_voxels() || self.voxel_planner == voxels::Planner::VoxelSurvey
     }
 
+    /// Whether looks can err, and its planner can tell.
+    pub fn has_errors(&self) -> bool {
+        self.is_of_voxels() && self.voxel_planner == voxels::Planner::VoxelSurvey
+    }
+
+    /// The same with looks that are right.
+    #[must_use]
+    pub fn without_errors(mut self) -> Self {
+        self.conditions.trouble = Trouble::default();
+        self.conditions.preset = Preset::default();
+        self
+    }
+
     /// The same without what does not apply.
     #[must_use]
     pub fn tidied(mut self) -> Self {
@@ -198,6 +211,9 @@ impl SurveySetup {
         }
         if !self.has_mission() {
             self.conditions.mission = Mission::default();
+        }
+        if !self.has_errors() {
+            self = self.without_errors();
         }
         if self.is_drawn() {
             self.size = self.size.min(*self.sizes().end());
@@ -449,6 +465,22 @@ pub(super) mod tests {
         }
     }
 
+    /// By looks that err, which the drones expect.
+    pub(in crate::survey) fn misled() -> SurveySetup {
+        SurveySetup {
+            conditions: Conditions {
+                trouble: Trouble {
+                    false_walls: 0.01,
+                    false_frees: 0.01,
+                    ..Trouble::default()
+                },
+                preset: Preset::Rangers,
+                ..conditions()
+            },
+            ..town()
+        }
+    }
+
     /// By what the planner of the core is compared with.
     pub(in crate::survey) fn compared() -> SurveySetup {
         SurveySetup {
@@ -458,7 +490,7 @@ pub(super) mod tests {
     }
 
     /// One of each kind.
-    pub(in crate::survey) fn all() -> [SurveySetup; 8] {
+    pub(in crate::survey) fn all() -> [SurveySetup; 9] {
         let hills = SurveySetup {
             size: 24,
             ..SurveySetup::default()
@@ -472,6 +504,7 @@ pub(super) mod tests {
             wide(),
             compared(),
             blown_about_rooms(),
+            misled(),
         ]
     }
 
@@ -551,6 +584,22 @@ pub(super) mod tests {
             ..blown()
         };
         assert!(!elsewhere.tidied().command().contains("--energy"));
+        let errors = " --preset rangers";
+        let command = misled().command();
+        assert!(command.contains(" --false-walls 0.01 --false-frees 0.01"));
+        assert!(command.contains(errors), "{command}");
+        for elsewhere in [
+            SurveySetup {
+                terrain: TerrainSource::Urban(2),
+                ..misled()
+            },
+            SurveySetup {
+                voxel_planner: voxels::Planner::Greedy,
+                ..misled()
+            },
+        ] {
+            assert!(!elsewhere.tidied().command().contains(errors));
+        }
         assert_eq!(
             compared().command(),
             "cargo run --release -- survey --terrain town:2 --size 24 --planner greedy --robots 3 \

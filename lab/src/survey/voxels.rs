@@ -123,7 +123,17 @@ impl Flight for Voxels {
         let is_windy = !trace.scenario.conditions.wind.is_none();
         let contacts = trace.contacts;
         let ends = || format!("The wind ended {contacts} steps beside or in something.");
-        is_windy.then(ends).into_iter().collect()
+        let mut mishaps: Vec<_> = is_windy.then(ends).into_iter().collect();
+        // A trace that was opened does not say them.
+        let errs = !trace.scenario.conditions.trouble.is_none();
+        if errs && matches!(self.source, Source::Running(_)) {
+            let (bumps, claims) = (trace.bumps, trace.false_claims);
+            mishaps.push(format!("{bumps} steps ended at what was not seen."));
+            mishaps.push(format!(
+                "{claims} drones say that all is known while something is not."
+            ));
+        }
+        mishaps
     }
 
     fn costs(&self) -> Vec<Cost> {

@@ -106,6 +106,7 @@ fn one_scenario_has_one_digest_by_command_in_the_browser_and_on_chips() {
         "terrain=urban:3&size=40&robots=3&wind=0.2&come-home",
         "terrain=town:2&size=24&robots=3&clearance=2&range=6&sensor=camera&fov=100x60",
         "terrain=town:2&size=24&planner=greedy&clearance=0&range=6&wind=0.2",
+        "terrain=town:2&size=24&range=6&false-walls=0.01&false-frees=0.01&preset=rangers",
     ] {
         let setup = SurveySetup::from_address(address).unwrap();
         let here = by_command(&setup.command());

@@ -214,6 +214,8 @@ fn traces_of_surveys_are_dropped_played_and_scrubbed() {
 fn copied(harness: &mut Harness<'static, App>, button: &str) -> String {
     // What the last click has changed moves the buttons.
     harness.run();
+    harness.get_by_label(button).scroll_to_me();
+    harness.run();
     harness.get_by_label(button).click();
     for _ in 0..4 {
         harness.step();

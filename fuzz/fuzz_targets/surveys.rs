@@ -261,5 +261,7 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         stops: vec![None; robots],
         violations: 0,
         contacts: 0,
+        bumps: 0,
+        false_claims: 0,
     }
 }

@@ -45,8 +45,9 @@ pub struct MissionArgs {
     come_home: bool,
     /// Steps that a robot's energy lasts for: it turns back in time, and stops at home. With
     /// --resume it goes on with as much again. For the explorer, and in the air, where hovering
-    /// takes as much as a step.
-    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    /// takes as much as a step: seconds of flight × speed / side of a cell, or / the metres of
+    /// --step over heights.
+    #[arg(long, value_name = "STEPS", allow_negative_numbers = true, value_parser = steps)]
     energy: Option<u32>,
 }
 
@@ -57,4 +58,9 @@ impl MissionArgs {
             energy: self.energy.unwrap_or(mission.energy),
         }
     }
+}
+
+fn steps(text: &str) -> Result<u32, String> {
+    let steps = text.parse().ok().filter(|&steps| steps > 0);
+    steps.ok_or_else(|| "expected a positive whole number of steps".into())
 }

@@ -436,6 +436,7 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
         .write(fs::File::create(path.join("rooms.bt")).unwrap())
         .unwrap();
     fs::write(path.join("cloud.las"), "LASF").unwrap();
+    fs::write(path.join("hill.asc"), "ncols 1\nnrows 1\ncellsize 1\n5\n").unwrap();
     for (arguments, words) in [
         ("--scene rooms.bt --start 0,0.5", ["X,Y,Z", "three"]),
         (
@@ -462,6 +463,35 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
         ("--scene cloud.las", ["cloud.las", "expected an OctoMap"]),
         ("--start 1,1,1", ["--start", "--scene"]),
         ("--voxel-size 2", ["--voxel-size", "--scene"]),
+        (
+            "--terrain town:1 --voxel-size 2",
+            ["--voxel-size", "--scene"],
+        ),
+        ("--terrain gaussian:1 --margin 1", ["--margin", "--scene"]),
+        ("--terrain town:1 --free rest", ["--free", "--scene"]),
+        ("--scene town:1", ["--scene town:1", "--terrain town:1"]),
+        ("--scene hill.asc", ["hill.asc", "give --terrain hill.asc"]),
+        ("--terrain none.asc", ["no such file", "ESRI ASCII grid"]),
+        (
+            "--energy -5",
+            ["--energy", "positive whole number of steps"],
+        ),
+        (
+            "--scene rooms.bt --radius 0.07m",
+            ["0.07m", "a number of metres"],
+        ),
+        (
+            "--terrain town:1 --metres-per-cell 1 --speed -1",
+            ["--speed -1", "metres a second"],
+        ),
+        (
+            "--scene rooms.bt --start 0,0,50",
+            ["--start 0,0,50", "from -2."],
+        ),
+        (
+            "--scene rooms.bt --voxel-size 1.5 --clearance 3",
+            ["no room", "smaller --clearance"],
+        ),
         (
             "--scene rooms.bt --speed 0",
             ["--speed 0", "metres a second"],
@@ -514,6 +544,41 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
         ),
     ] {
         assert_refused(path, arguments, &words);
+    }
+}
+
+/// In both worlds, with what is left of the energy; and a mission for each charge.
+#[test]
+fn summaries_say_whether_robots_are_home_and_with_what_energy() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for place in ["gaussian:1", "town:1"] {
+        let place = format!("--terrain {place} --size 16 --robots 1 --metres-per-cell 1 --json");
+        let robot = |arguments: &str| -> Value {
+            let assert = survey(path, &format!("{place} --out out {arguments}")).assert();
+            let mut summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+            summary["robots"][0].take()
+        };
+        assert_eq!(robot("")["energy_left"], Value::Null);
+        let out = |name: &str| path.join("out").join(name).exists();
+        let flown = robot("--energy 60 --resume 0@100 --home 60,20 --speed 1 --crazyflie");
+        assert_eq!(flown["is_home"], true, "{place}");
+        let left = flown["energy_left"].as_i64().unwrap();
+        assert!((0..60).contains(&left), "{place}: {left}");
+        assert!(out("mission-0.plan") && out("mission-0-2.plan") && out("trajectory-0-2.csv"));
+        assert!(!out("mission-0-3.plan"));
+        let cut = robot("--energy 60 --max-ticks 9");
+        assert_eq!(cut["is_home"], false, "{place}");
+        // A run that is cut off counts the last decision, or does not.
+        let left = cut["energy_left"].as_i64().unwrap();
+        assert!((50..=51).contains(&left), "{place}: {left}");
+        let arguments = format!("{place} --max-ticks 9 --energy 60 --resume 0@20 --out out");
+        let assert = survey(path, &arguments).assert().code(1);
+        let message = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+        assert!(
+            message.contains("--resume 0@20 was not carried out"),
+            "{message}"
+        );
     }
 }
 

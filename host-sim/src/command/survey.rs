@@ -4,7 +4,7 @@ mod body;
 mod print;
 mod ways;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -17,11 +17,12 @@ use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{
     Conditions, ConditionsArgs, MediumKind, ScenarioError, parse_share, voxels,
 };
-use host_sim::scene::{Fov, Frame, Free, Scene, SceneOptions, Sensor};
+use host_sim::scene::{Fov, Frame, Free, Scene, SceneError, SceneOptions, Sensor};
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
-use host_sim::terrain::{TerrainOptions, TerrainSource};
+use host_sim::terrain::{Terrain, TerrainOptions, TerrainSource};
 use indicatif::ProgressBar;
+use planner_core::Extent;
 use planner_core::survey::Limits;
 use planner_core::volume::{Field, Voxel};
 use planner_core::voxel_survey::MAX_RANGE;
@@ -52,7 +53,7 @@ pub(crate) struct Survey {
     scene: Option<PathBuf>,
     /// Side of a voxel of the --scene in metres: of a tree a whole number of its own, which is
     /// the default.
-    #[arg(long, value_name = "M", requires = "scene")]
+    #[arg(long, value_name = "M", requires = "scene", allow_negative_numbers = true, value_parser = metres)]
     voxel_size: Option<f64>,
     /// What of a point cloud is free: the rest of its bounding box, or what lies on the rays
     /// from the VIEWPOINT of a PCD file to its points, which leave the rest unknown. Of a mesh
@@ -61,19 +62,19 @@ pub(crate) struct Survey {
     free: Option<Free>,
     /// Free metres beside and above the bounding box of a cloud or a mesh, to fly about it.
     /// Default: 0.
-    #[arg(long, value_name = "M", requires = "scene")]
+    #[arg(long, value_name = "M", requires = "scene", allow_negative_numbers = true, value_parser = metres)]
     margin: Option<f64>,
     /// Where all robots start among voxels: metres in the coordinates of the --scene, whole
-    /// voxels in a town, metres with --metres-per-cell. Default: in the largest room, as far to the north-west as one can.
+    /// voxels in a town, metres with --metres-per-cell. Default: in the largest room, low over known ground, as far to the north-west as one can.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     start: Option<Start>,
     /// Side of a column of a drawn --terrain, a town or a picture in metres: what is counted in
     /// cells is counted in metres, too. Other files say it themselves.
-    #[arg(long, value_name = "M", conflicts_with = "scene")]
+    #[arg(long, value_name = "M", conflicts_with = "scene", allow_negative_numbers = true, value_parser = metres)]
     metres_per_cell: Option<f64>,
     /// Metres between two neighbouring shades of a picture, of 8 or 16 bits, or numbers of a
     /// GeoTIFF. Default: a quarter of a cell; of a GeoTIFF 1.
-    #[arg(long, value_name = "M", conflicts_with = "scene")]
+    #[arg(long, value_name = "M", conflicts_with = "scene", allow_negative_numbers = true, value_parser = metres)]
     metres_per_level: Option<f64>,
     #[command(flatten)]
     ways: WayArgs,
@@ -88,7 +89,7 @@ pub(crate) struct Survey {
     /// Number of robots.
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(1..=64))]
     robots: u8,
-    /// Sensor range in cells, above the least altitude and at most 12; in a town of voxels a
+    /// Sensor range in cells, above the least altitude and at most 12; among voxels a
     /// whole number from 2.
     #[arg(long, value_name = "R", default_value_t = 8.0)]
     range: f32,
@@ -132,9 +133,17 @@ impl Survey {
                 free: self.free,
                 margin: self.margin,
             };
-            let scene = Scene::read(path, &options);
-            let scene = scene.map_err(|error| format!("{}: {error}", path.display()))?;
+            let scene = Scene::read(path, &options).map_err(|error| no_scene(path, &error))?;
             return self.run_in(&scene);
+        }
+        // Where --terrain is given, its conflict with --scene keeps that from being asked for.
+        let of_scenes = [
+            ("voxel-size", self.voxel_size.is_some()),
+            ("free", self.free.is_some()),
+            ("margin", self.margin.is_some()),
+        ];
+        if let Some((option, _)) = of_scenes.iter().find(|(_, given)| *given) {
+            return Err(format!("--{option} applies to a --scene FILE alone; leave it out").into());
         }
         if matches!(self.terrain, TerrainSource::Town(_)) {
             self.check_for_voxels()?;
@@ -168,6 +177,15 @@ impl Survey {
         let size = self.size.unwrap_or(SIDE);
         let terrain = self.terrain.load_with(size, &self.metres())?;
         self.ways.check(terrain.scale().is_some())?;
+        if let TerrainSource::File(path) = &self.terrain
+            && path.extension().is_some_and(|it| it == "bt" || it == "ot")
+        {
+            eprintln!(
+                "of a tree each column counts with its highest voxel; to survey it voxel by voxel, \
+                 indoors too, give --scene {}",
+                path.display()
+            );
+        }
         let terrain = Arc::new(terrain);
         let mut run = open(terrain.clone(), &self.scenario()?)?;
         let mut folder = self.output.folder(terrain.name())?;
@@ -194,7 +212,7 @@ impl Survey {
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
-        let ways = (0..trace.robots).filter_map(|robot| export::over_heights(&trace, robot));
+        let ways = (0..trace.robots).map(|robot| export::over_heights(&trace, robot));
         self.ways.write(&mut folder, ways)?;
         let path = folder.path().to_path_buf();
         folder.close_run()?;
@@ -202,6 +220,7 @@ impl Survey {
             true => println!("{json}"),
             false => print(&summary, &path),
         }
+        print::unmet(&summary.head);
         Ok(ended(&summary.head, "columns", summary.violations))
     }
 
@@ -237,14 +256,25 @@ impl Survey {
         scenario.range = self.range as u8;
         scenario.clearance = self.body.clearance(scene)?;
         scenario.field = self.field(scenario.clearance);
-        scenario.start = match self.start {
+        scenario.start = match &self.start {
             Some(start) => Some(start.voxel(scene)?),
             // A town with metres is flown from where it is without.
             None if self.scene.is_none() => scene.clone().framed(None).start(scenario.clearance),
             None => None,
         };
         self.set(&mut scenario.conditions)?;
-        let mut run = Simulation::new(scene, &scenario)?;
+        let run = Simulation::new(scene, &scenario);
+        let mut run = run.map_err(|error| match (error, &self.start) {
+            (ScenarioError::NoRoomAt { body, nearest, .. }, Some(start)) => {
+                let found = start.typed.clone();
+                ScenarioError::NoRoomAt {
+                    found,
+                    body,
+                    nearest,
+                }
+            }
+            (error, _) => error,
+        })?;
         let mut folder = self.output.folder(scene.name())?;
         let bar = self.output.bar(run.trace().visible, "voxels");
         while run.step() {
@@ -267,7 +297,7 @@ impl Survey {
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         folder.write("map.ply", |file| Ok(export::ply(&trace, file)?))?;
-        let ways = (0..trace.ways.len()).filter_map(|robot| export::among_voxels(&trace, robot));
+        let ways = (0..trace.ways.len()).map(|robot| export::among_voxels(&trace, robot));
         self.ways.write(&mut folder, ways)?;
         let path = folder.path().to_path_buf();
         folder.close_run()?;
@@ -275,6 +305,7 @@ impl Survey {
             true => println!("{json}"),
             false => print_voxels(&summary, &path),
         }
+        print::unmet(&summary.head);
         Ok(ended(&summary.head, "visible voxels", summary.violations))
     }
 
@@ -313,8 +344,9 @@ impl Survey {
         ];
         if let Some((option, _)) = given.iter().find(|(_, given)| *given) {
             return Err(format!(
-                "--{option} does not apply in a town of voxels, where robots fly a voxel a \
-                 step; leave it out, or choose gaussian:SEED, urban:SEED or a file"
+                "--{option} does not apply among voxels, in a town or a --scene, where robots fly a \
+                 voxel a step; leave it out, or choose gaussian:SEED, urban:SEED or a file as \
+                 --terrain"
             ));
         }
         if self.fov.is_some() && self.sensor != Some(Sensor::Camera) {
@@ -324,13 +356,13 @@ impl Survey {
         }
         if let Some(size) = self.size.filter(|&size| size > TOWN) {
             return Err(format!(
-                "--size {size}: expected 8 to {TOWN} in a town of voxels"
+                "--size {size}: expected 8 to {TOWN} for a town of voxels"
             ));
         }
         match self.range.fract() == 0.0 && (2.0..=f32::from(MAX_RANGE)).contains(&self.range) {
             true => Ok(()),
             false => Err(format!(
-                "--range {}: expected a whole number from 2 to {MAX_RANGE} in a town of voxels",
+                "--range {}: expected a whole number from 2 to {MAX_RANGE} among voxels",
                 self.range
             )),
         }
@@ -353,9 +385,12 @@ impl Survey {
     }
 }
 
-/// Three numbers.
-#[derive(Clone, Copy)]
-struct Start([f64; 3]);
+/// Three numbers, and how they were typed.
+#[derive(Clone)]
+struct Start {
+    typed: String,
+    at: [f64; 3],
+}
 
 impl FromStr for Start {
     type Err = String;
@@ -366,19 +401,55 @@ impl FromStr for Start {
             .map_while(|part| part.parse().ok())
             .collect();
         match numbers[..] {
-            [x, y, z] if numbers.len() == text.split(',').count() => Ok(Self([x, y, z])),
+            [x, y, z] if numbers.len() == text.split(',').count() => Ok(Self {
+                typed: text.into(),
+                at: [x, y, z],
+            }),
             _ => Err("expected X,Y,Z, three numbers with commas between".into()),
         }
     }
 }
 
 impl Start {
-    fn voxel(self, scene: &Scene) -> Result<Voxel, String> {
-        let Self([x, y, z]) = self;
-        let voxel = scene.frame().unwrap_or(Frame::PLAIN).voxel(self.0);
-        voxel
-            .filter(|voxel| scene.content(*voxel).is_some())
-            .ok_or_else(|| format!("--start {x},{y},{z}: lies outside of the scene"))
+    fn voxel(&self, scene: &Scene) -> Result<Voxel, String> {
+        let frame = scene.frame().unwrap_or(Frame::PLAIN);
+        let voxel = frame.voxel(self.at);
+        let voxel = voxel.filter(|voxel| scene.content(*voxel).is_some());
+        voxel.ok_or_else(|| {
+            let Extent { width, height } = scene.extent();
+            let levels = i16::from(scene.levels());
+            let last = Voxel::new(width as i16 - 1, height as i16 - 1, levels - 1);
+            let corner = |voxel, side: f64| {
+                let corner = frame.middle(voxel).map(|at| at + side * frame.voxel_size);
+                corner.map(|at| format!("{at:.2}")).join(",")
+            };
+            format!(
+                "--start {}: lies outside of the scene, which reaches from {} to {}",
+                self.typed,
+                corner(Voxel::new(0, 0, 0), -0.5),
+                corner(last, 0.5),
+            )
+        })
+    }
+}
+
+/// A number of metres.
+fn metres(text: &str) -> Result<f64, String> {
+    let metres = text.parse();
+    metres.map_err(|_| "expected a number of metres without a unit, such as 0.07".into())
+}
+
+/// Why a file is no scene; with the option for terrains if it is one.
+fn no_scene(path: &Path, error: &SceneError) -> String {
+    let name = path.display();
+    let is_terrain = match error {
+        SceneError::Missing => !matches!(name.to_string().parse(), Ok(TerrainSource::File(_))),
+        SceneError::Unknown => Terrain::read(path, &TerrainOptions::default()).is_ok(),
+        _ => false,
+    };
+    match is_terrain {
+        true => format!("--scene {name}: is a terrain; give --terrain {name}"),
+        false => format!("{name}: {error}"),
     }
 }
 

@@ -75,7 +75,7 @@ pub fn plan(way: &Way, home: Home, speed: f64) -> Value {
             "command": command,
             "doJumpId": number + 1,
             "frame": RELATIVE,
-            "params": [0, 0, 0, null, latitude, longitude, point[2]],
+            "params": [0, acceptance(command, way), 0, null, latitude, longitude, point[2]],
         })
     });
     json!({
@@ -105,9 +105,13 @@ pub fn waypoints(way: &Way, home: Home, mut to: impl Write) -> io::Result<()> {
     writeln!(to, "QGC WPL 110")?;
     let mut line = |number: usize, frame: u8, command: u16, (north, east): (f64, f64), up: f64| {
         let current = u8::from(number == 0);
+        let near = match number {
+            0 => 0.0,
+            _ => acceptance(command, way),
+        };
         writeln!(
             to,
-            "{number}\t{current}\t{frame}\t{command}\t0\t0\t0\t0\t{north:.8}\t{east:.8}\t{up:.3}\t1"
+            "{number}\t{current}\t{frame}\t{command}\t0\t{near}\t0\t0\t{north:.8}\t{east:.8}\t{up:.3}\t1"
         )
     };
     // Item 0 is home.
@@ -115,6 +119,15 @@ pub fn waypoints(way: &Way, home: Home, mut to: impl Write) -> io::Result<()> {
     commands(way).try_for_each(|(number, command, point)| {
         line(number + 1, RELATIVE, command, home.degrees(point), point[2])
     })
+}
+
+/// How near to a turn the vehicle has to come, in metres: half a cell. With 0 autopilots take
+/// metres of their own, more than rooms have.
+fn acceptance(command: u16, way: &Way) -> f64 {
+    match command {
+        WAYPOINT => way.cell / 2.0,
+        _ => 0.0,
+    }
 }
 
 /// Number, command and place of each item.
@@ -153,6 +166,8 @@ mod tests {
         let mut way = Way {
             places: vec![[0.0, 0.0, 1.5], [1.0, 0.0, 1.5]],
             ground: 0.5,
+            is_ground_known: true,
+            cell: 0.5,
         };
         let mut file = Vec::new();
         waypoints(&way, HOME, &mut file).unwrap();
@@ -161,7 +176,7 @@ mod tests {
             "QGC WPL 110\n\
              0\t1\t0\t16\t0\t0\t0\t0\t60.00000000\t-1.00000000\t0.000\t1\n\
              1\t0\t3\t22\t0\t0\t0\t0\t60.00000000\t-1.00000000\t1.500\t1\n\
-             2\t0\t3\t16\t0\t0\t0\t0\t60.00000000\t-0.99998203\t1.500\t1\n"
+             2\t0\t3\t16\t0\t0.25\t0\t0\t60.00000000\t-0.99998203\t1.500\t1\n"
         );
         let plan = plan(&way, HOME, 2.0);
         let items = plan["mission"]["items"].as_array().unwrap();

@@ -143,6 +143,8 @@ mod tests {
         let mut way = Way {
             places: vec![[1.0, 2.0, 0.5], [1.0, 2.0, 16.5]],
             ground: 0.5,
+            is_ground_known: true,
+            cell: 1.0,
         };
         trajectory(&way, 35.0, &mut file).unwrap();
         let text = String::from_utf8(file).unwrap();

@@ -120,8 +120,9 @@ pub struct ConditionsArgs {
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
     /// In the air, flights and hovers end off where they should: along each axis by this many
-    /// cells, the standard deviation, 0 to 1. Robots know where they have come to. Default: 0.
-    #[arg(long, value_name = "S")]
+    /// cells, the standard deviation, 0 to 1: the metres of drift in a step, divided by the side
+    /// of a cell. Robots know where they have come to. Default: 0.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     wind: Option<f64>,
     #[command(flatten)]
     mission: MissionArgs,

@@ -160,7 +160,9 @@ pub enum ScenarioError {
         side: u16,
         most: u8,
     },
-    #[error("there is no room for a robot: {0} has to be free")]
+    #[error(
+        "there is no room for a robot: {0} has to be free; take smaller voxels or a smaller --clearance"
+    )]
     NoPose(BodyText),
     #[error(
         "--start {found}: {body} has to be known and free; the nearest such place is {nearest}"

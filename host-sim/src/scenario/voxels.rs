@@ -114,8 +114,7 @@ impl Scenario {
     /// The first setting that is out of its range, and the range.
     pub fn check(&self, scene: &Scene) -> Result<(), ScenarioError> {
         self.conditions.check(self.robots)?;
-        self.conditions
-            .check_flown("in a town of voxels", &OPTIONS)?;
+        self.conditions.check_flown("among voxels", &OPTIONS)?;
         if self.conditions.preset == Preset::Lidar {
             let expected = "truthful or rangers among voxels";
             return Err(ScenarioError::setting("preset", Preset::Lidar, expected));

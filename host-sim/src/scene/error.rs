@@ -56,7 +56,7 @@ pub enum SceneError {
     Nothing(&'static str),
     #[error(
         "has no voxels of its own; give their side in metres, for example --voxel-size \
-         {suggested}: it spans {:.1}×{:.1}×{:.1} m", spans[0], spans[1], spans[2]
+         {suggested}: it spans {:.1}×{:.1}×{:.1} m, its coordinates taken as metres", spans[0], spans[1], spans[2]
     )]
     NoVoxelSize { spans: [f64; 3], suggested: f64 },
     #[error(transparent)]
@@ -87,7 +87,8 @@ pub enum SceneError {
     },
     #[error(
         "{width}×{height}×{levels} voxels of {voxel_size} m; expected at most \
-         {LARGEST}×{LARGEST}×{LEVELS}: give --voxel-size {suggested} or more"
+         {LARGEST}×{LARGEST}×{LEVELS}: give --voxel-size {suggested} or more; coordinates of \
+         files are taken as metres"
     )]
     Size {
         width: i64,

@@ -1,9 +1,10 @@
 //! A survey in one JSON object.
 
-use planner_core::RobotId;
+use planner_core::surface::Height;
+use planner_core::{Point, RobotId, Stop};
 use serde::Serialize;
 
-use super::Head;
+use super::{Head, energy_left};
 use crate::record::Deed;
 use crate::record::heights::{Safety, Trace};
 use crate::scenario::heights::Planner;
@@ -77,6 +78,9 @@ pub struct RobotSummary {
     pub stop_reason: Option<String>,
     /// Whether it is where it started, or within a cell of it.
     pub is_home: bool,
+    /// Steps of energy left when it had least; below 0 it flew for longer than its energy lasts.
+    /// `null`: nothing limits it.
+    pub energy_left: Option<i64>,
     /// Whether it lived to the end of the run.
     pub alive: bool,
 }
@@ -146,6 +150,8 @@ impl RobotSummary {
         let is_home = way.last().is_none_or(|at| at.distance(start) <= 1.0);
         let faults = &trace.scenario.conditions.faults;
         let last = trace.seen.len() as u32 - 1;
+        let id = RobotId(robot as u8);
+        let deeds = trace.of(robot).map(|record| (record.tick, record.deed));
         Self {
             start: (start.x, start.y, start.z),
             steps: count(Deed::Flew),
@@ -158,9 +164,27 @@ impl RobotSummary {
             frames_sent: trace.of(robot).map(|record| record.sent.frames).sum(),
             bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
             stop: stop.map(|stop| stop.reason().name()),
-            stop_reason: stop.map(|stop| stop.to_string()),
+            stop_reason: stop.map(|stop| reason(trace, stop)),
             is_home,
-            alive: faults.is_alive(RobotId(robot as u8), last),
+            energy_left: energy_left(&trace.scenario.conditions, id, deeds),
+            alive: faults.is_alive(id, last),
         }
     }
+}
+
+/// The reason of a stop in words; with the ceiling, where that keeps the ground from being seen.
+fn reason(trace: &Trace, stop: Stop) -> String {
+    let ceiling = trace.scenario.limits.ceiling;
+    let ground = |at| trace.terrain.height(at).map(Height::cells);
+    let (Stop::Unseen { at, .. } | Stop::Held { at, .. }) = stop else {
+        return stop.to_string();
+    };
+    let Some(ground) = ground(at).filter(|&ground| ground > ceiling) else {
+        return stop.to_string();
+    };
+    let metres = trace.terrain.scale().map_or(String::new(), |scale| {
+        let [x, y, z] = scale.metres(Point::over(at, ground));
+        format!(" ({x:.1},{y:.1},{z:.1} in metres)")
+    });
+    format!("{stop}; the ground there{metres} is {ground} cells high, above --ceiling {ceiling}")
 }

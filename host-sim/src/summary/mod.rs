@@ -4,9 +4,11 @@ mod grid;
 pub mod heights;
 pub mod voxels;
 
+use planner_core::RobotId;
 use serde::Serialize;
 
-use crate::scenario::Conditions;
+use crate::record::Deed;
+use crate::scenario::{Conditions, Faults};
 
 pub use grid::{BodySummary, MotionSummary, RobotSummary, Summary};
 
@@ -37,4 +39,45 @@ pub struct Head {
     /// What the fleet worked under.
     #[serde(flatten)]
     pub conditions: Conditions,
+}
+
+/// The steps of energy that `robot`, which did `deeds`, had left when it had least: below 0 it
+/// was in the air for longer than its energy lasts. `None`: nothing limits its energy.
+fn energy_left(
+    conditions: &Conditions,
+    robot: RobotId,
+    deeds: impl Iterator<Item = (u32, Deed)>,
+) -> Option<i64> {
+    let energy = Some(i64::from(conditions.mission.energy)).filter(|&energy| energy > 0)?;
+    let (mut left, mut least) = (energy, energy);
+    for (tick, deed) in deeds {
+        if Faults::befalls(&conditions.faults.resumes, robot, tick) {
+            left = energy;
+        }
+        left -= i64::from(!matches!(deed, Deed::Stopped(_)));
+        least = least.min(left);
+    }
+    Some(least)
+}
+
+#[cfg(test)]
+mod tests {
+    use planner_core::Reason;
+
+    use super::*;
+    use crate::scenario::Event;
+
+    #[test]
+    fn energy_is_spent_in_the_air_and_is_as_much_again_after_a_rest() {
+        let mut conditions = Conditions::flown(0);
+        let robot = RobotId(1);
+        let home = Deed::Stopped(Reason::Home);
+        let deeds = [Deed::Flew, Deed::Hovered, home, Deed::Refused, Deed::Flew];
+        let left = |conditions: &Conditions| energy_left(conditions, robot, (0..).zip(deeds));
+        assert_eq!(left(&conditions), None);
+        conditions.mission.energy = 3;
+        assert_eq!(left(&conditions), Some(-1));
+        conditions.faults.resumes = vec![Event { robot, tick: 3 }];
+        assert_eq!(left(&conditions), Some(1));
+    }
 }

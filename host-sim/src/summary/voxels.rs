@@ -3,7 +3,7 @@
 use planner_core::RobotId;
 use serde::Serialize;
 
-use super::Head;
+use super::{Head, energy_left};
 use crate::record::voxels::VoxelTrace;
 use crate::scenario::voxels::Planner;
 use crate::scene::{Free, Sensor};
@@ -74,6 +74,11 @@ pub struct RobotSummary {
     pub stop: Option<&'static str>,
     /// The reason in words.
     pub stop_reason: Option<String>,
+    /// Whether it is where it started, or in a voxel beside it.
+    pub is_home: bool,
+    /// Steps of energy left when it had least; below 0 it flew for longer than its energy lasts.
+    /// `null`: nothing limits it.
+    pub energy_left: Option<i64>,
     /// Whether it lived to the end of the run.
     pub alive: bool,
 }
@@ -141,6 +146,8 @@ impl RobotSummary {
         let last = trace.seen.len() as u32 - 1;
         let steps = way.windows(2).filter(|leg| leg[0] != leg[1]).count();
         let frame = trace.scene.frame();
+        let id = RobotId(robot as u8);
+        let deeds = own().map(|record| (record.tick, record.deed));
         Self {
             start: (way[0].x, way[0].y, way[0].z),
             steps,
@@ -151,7 +158,9 @@ impl RobotSummary {
             bytes_sent: own().map(|record| record.sent.bytes).sum(),
             stop: trace.stops[robot].map(|stop| stop.reason().name()),
             stop_reason: trace.stops[robot].map(|stop| stop.to_string()),
-            alive: faults.is_alive(RobotId(robot as u8), last),
+            is_home: way[way.len() - 1].distance_squared(way[0]) <= 1,
+            energy_left: energy_left(&trace.scenario.conditions, id, deeds),
+            alive: faults.is_alive(id, last),
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) const HIGHEST: u32 = 63;
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // each variant's message is its documentation
 pub enum TerrainError {
-    #[error("no such file; by name there are gaussian:SEED, urban:SEED and town:SEED")]
+    #[error("no such file; expected {READ}; or gaussian:SEED, urban:SEED or town:SEED")]
     Missing,
     #[error("cannot be read: {0}; check that it is a file that you may read")]
     Unreadable(#[from] io::Error),

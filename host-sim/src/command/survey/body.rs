@@ -16,7 +16,7 @@ pub(super) struct BodyArgs {
     clearance: Option<u8>,
     /// Radius of the robots in metres, with errors of pose and control, where voxels have
     /// metres: the least --clearance in which such a ball touches nothing.
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = super::metres)]
     radius: Option<f64>,
 }
 

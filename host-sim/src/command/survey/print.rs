@@ -22,6 +22,22 @@ pub(super) fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
     ExitCode::FAILURE
 }
 
+/// Says which robots were not told to go on that should have been.
+pub(super) fn unmet(head: &Head) {
+    let faults = &head.conditions.faults;
+    for event in &faults.resumes {
+        let (robot, tick) = (event.robot.0, event.tick);
+        let why = match () {
+            () if tick > head.ticks || tick == head.ticks && head.ticks_to_stopped.is_none() => {
+                format!("the run ended after {} steps; see --max-ticks", head.ticks)
+            }
+            () if !faults.is_alive(event.robot, tick) => "the robot was dead".into(),
+            () => continue,
+        };
+        eprintln!("--resume {robot}@{tick} was not carried out: {why}");
+    }
+}
+
 fn after(ticks: Option<u32>) -> String {
     ticks.map_or("never".into(), |ticks| format!("after {ticks} ticks"))
 }
@@ -49,7 +65,7 @@ pub(super) fn print(summary: &Summary, out: &Path) {
     );
     print_home(
         &summary.head,
-        summary.robots.iter().map(|robot| robot.is_home),
+        (summary.robots.iter()).map(|robot| (robot.is_home, robot.energy_left)),
     );
     print_end(&summary.head, out);
 }
@@ -86,6 +102,11 @@ pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
         summary.seconds.zip(summary.speed),
         summary.robots.iter().filter_map(|robot| robot.metres),
     );
+    print_home(
+        &summary.head,
+        (summary.robots.iter()).map(|robot| (robot.is_home, robot.energy_left)),
+    );
+    println!("  clearance          {} voxels", summary.clearance);
     if let Some(free) = summary.free_space {
         let what = match free {
             Free::Rest => "taken for free where the file has nothing",
@@ -130,13 +151,26 @@ fn print_metres(time: Option<(f64, f64)>, ways: impl Iterator<Item = f64>) {
     }
 }
 
-/// How many came home, where they were to.
-fn print_home(head: &Head, are_home: impl ExactSizeIterator<Item = bool>) {
+/// How many are home that were to come there, and what they had left of their energy.
+fn print_home(head: &Head, robots: impl ExactSizeIterator<Item = (bool, Option<i64>)>) {
     let mission = head.conditions.mission;
-    if mission.come_home || mission.energy > 0 {
-        let robots = are_home.len();
-        let home = are_home.filter(|&is_home| is_home).count();
-        println!("  at home            {home} of {robots} robots");
+    if !mission.come_home && mission.energy == 0 {
+        return;
+    }
+    let (are_home, left): (Vec<_>, Vec<_>) = robots.unzip();
+    let home = are_home.iter().filter(|&&is_home| is_home).count();
+    println!("  at home            {home} of {} robots", are_home.len());
+    for (number, left) in left.into_iter().enumerate() {
+        match left {
+            None => {}
+            Some(left) if left >= 0 => {
+                println!("  energy             robot {number} had {left} steps left");
+            }
+            Some(left) => println!(
+                "  energy             robot {number} exceeded it by {} steps",
+                -left
+            ),
+        }
     }
 }
 

@@ -15,14 +15,15 @@ const USUAL_SPEED: f64 = 1.0;
 pub(super) struct WayArgs {
     /// How fast robots fly, in metres a second: the summary has seconds then. A step takes as
     /// long as the longest flight in it.
-    #[arg(long, value_name = "M/S")]
+    #[arg(long, value_name = "M/S", allow_negative_numbers = true, value_parser = super::metres)]
     pub(super) speed: Option<f64>,
     /// Writes the way of each robot as a MAVLink mission, mission-N.plan and
-    /// mission-N.waypoints. The origin of the --scene, or the north-west corner of the
+    /// mission-N.waypoints; with --resume mission-N-2.plan and so on, one for each charge. The origin of the --scene, or the north-west corner of the
     /// --terrain, lies at this latitude and longitude; x leads east and y north.
     #[arg(long, value_name = "LAT,LON", allow_hyphen_values = true)]
     home: Option<Home>,
-    /// Writes the way of each robot as a Crazyflie trajectory, trajectory-N.csv, that is nowhere
+    /// Writes the way of each robot as a Crazyflie trajectory, trajectory-N.csv, in parts as the
+    /// missions, that is nowhere
     /// faster than --speed.
     #[arg(long, requires = "speed")]
     crazyflie: bool,
@@ -50,24 +51,39 @@ impl WayArgs {
         }
     }
 
-    /// Prepares the files of each way, in metres, that are asked for.
+    /// Prepares the files that are asked for, of the ways of each robot in metres.
     pub(super) fn write(
         &self,
         folder: &mut Folder,
-        ways: impl Iterator<Item = Way>,
+        robots: impl Iterator<Item = Vec<Way>>,
     ) -> Result<(), Box<dyn Error>> {
-        for (way, robot) in ways.zip(0..) {
+        let robots: Vec<_> = robots.collect();
+        let mut ways = robots.iter().flatten();
+        if (self.home.is_some() || self.crazyflie) && ways.any(|way| !way.is_ground_known) {
+            eprintln!(
+                "the file does not say what is under a start: the take-off may not be from the \
+                 ground; choose another place with --start X,Y,Z"
+            );
+        }
+        let numbered = robots.iter().zip(0..).flat_map(|(ways, robot)| {
+            let names = (1..).map(move |part| match part {
+                1 => format!("{robot}"),
+                _ => format!("{robot}-{part}"),
+            });
+            ways.iter().zip(names)
+        });
+        for (way, robot) in numbered {
             if let Some(home) = self.home {
-                let plan = export::plan(&way, home, self.speed.unwrap_or(USUAL_SPEED));
+                let plan = export::plan(way, home, self.speed.unwrap_or(USUAL_SPEED));
                 let plan = serde_json::to_string_pretty(&plan)?;
                 folder.put(format!("mission-{robot}.plan"), &(plan + "\n"))?;
                 folder.write(format!("mission-{robot}.waypoints"), |file| {
-                    Ok(export::waypoints(&way, home, file)?)
+                    Ok(export::waypoints(way, home, file)?)
                 })?;
             }
             if let Some(speed) = self.speed.filter(|_| self.crazyflie) {
                 folder.write(format!("trajectory-{robot}.csv"), |file| {
-                    Ok(export::trajectory(&way, speed, file)?)
+                    Ok(export::trajectory(way, speed, file)?)
                 })?;
             }
         }

@@ -15,59 +15,87 @@ pub struct Crossing {
     pub left: f32,
 }
 
-/// The columns that a segment crosses, in order. Yields 1 + |Δcolumn| + |Δrow| items.
+/// The columns that a segment crosses, in order. Yields 1 + |Δcolumn| + |Δrow| items; from the
+/// other end the same, the other way round, bit for bit.
 // [Amanatides1987]
 #[derive(Clone, Debug)]
 pub struct Columns {
     from: Point,
     to: Point,
+    /// Whether the way leads backwards; parameters count from its other end then.
+    backwards: bool,
     cell: Cell,
-    /// Segment parameters at which the next column and row begin, and their period.
-    next: (f32, f32),
-    period: (f32, f32),
-    step: (i16, i16),
-    left: (u16, u16),
+    x: Axis,
+    y: Axis,
     entered: f32,
     done: bool,
+}
+
+/// The borders that a line crosses along an axis.
+#[derive(Clone, Debug)]
+struct Axis {
+    /// Where the line begins, and one over its length, of the way that is not backwards.
+    first: f32,
+    inverse: f32,
+    /// The next border, and those that are left.
+    border: f32,
+    left: u16,
+    step: i16,
+}
+
+impl Axis {
+    fn new(from: f32, to: f32, (start, end): (i16, i16), backwards: bool) -> Self {
+        let (first, last) = if backwards { (to, from) } else { (from, to) };
+        let border = if end > start { 1.0 } else { 0.0 };
+        Self {
+            first,
+            inverse: if start == end {
+                0.0
+            } else {
+                1.0 / (last - first)
+            },
+            border: f32::from(start) + border,
+            left: start.abs_diff(end),
+            step: end.saturating_sub(start).signum(),
+        }
+    }
+
+    /// The parameter at which the next border is crossed.
+    fn next(&self) -> f32 {
+        (self.border - self.first) * self.inverse
+    }
+
+    /// The border is crossed.
+    fn cross(&mut self) -> i16 {
+        self.left = self.left.saturating_sub(1);
+        self.border += f32::from(self.step);
+        self.step
+    }
 }
 
 impl Columns {
     /// The columns between two points with finite coordinates.
     pub fn new(from: Point, to: Point) -> Self {
         let (start, end) = (from.cell(), to.cell());
-        let axis = |from: f32, to: f32, start: i16, end: i16| {
-            let span = to - from;
-            let border = if end > start {
-                start as f32 + 1.0
-            } else {
-                start as f32
-            };
-            if start == end {
-                (f32::INFINITY, f32::INFINITY)
-            } else {
-                ((border - from) / span, 1.0 / span.abs())
-            }
-        };
-        let (next_x, period_x) = axis(from.x, to.x, start.x, end.x);
-        let (next_y, period_y) = axis(from.y, to.y, start.y, end.y);
+        let backwards = (from.x, from.y, from.z) > (to.x, to.y, to.z);
         Self {
             from,
             to,
+            backwards,
             cell: start,
-            next: (next_x, next_y),
-            period: (period_x, period_y),
-            step: (
-                end.x.saturating_sub(start.x).signum(),
-                end.y.saturating_sub(start.y).signum(),
-            ),
-            left: (start.x.abs_diff(end.x), start.y.abs_diff(end.y)),
+            x: Axis::new(from.x, to.x, (start.x, end.x), backwards),
+            y: Axis::new(from.y, to.y, (start.y, end.y), backwards),
             entered: from.z,
             done: false,
         }
     }
 
     fn height_at(&self, parameter: f32) -> f32 {
-        self.from.z + (self.to.z - self.from.z) * parameter.clamp(0.0, 1.0)
+        let (first, last) = match self.backwards {
+            true => (self.to.z, self.from.z),
+            false => (self.from.z, self.to.z),
+        };
+        first + (last - first) * parameter.clamp(0.0, 1.0)
     }
 }
 
@@ -79,21 +107,20 @@ impl Iterator for Columns {
             return None;
         }
         let cell = self.cell;
-        let left = if self.left == (0, 0) {
+        let (x, y) = (self.x.next(), self.y.next());
+        // At a corner first along x, and backwards last, so that both ways are one.
+        let is_x_first = (x <= y) != self.backwards;
+        let left = if self.x.left == 0 && self.y.left == 0 {
             self.done = true;
             self.to.z
-        } else if self.left.1 == 0 || (self.left.0 > 0 && self.next.0 <= self.next.1) {
-            let height = self.height_at(self.next.0);
-            self.next.0 += self.period.0;
-            self.left.0 -= 1;
-            self.cell.x = self.cell.x.saturating_add(self.step.0);
-            height
+        } else if self.y.left == 0 || (self.x.left > 0 && is_x_first) {
+            let step = self.x.cross();
+            self.cell.x = self.cell.x.saturating_add(step);
+            self.height_at(x)
         } else {
-            let height = self.height_at(self.next.1);
-            self.next.1 += self.period.1;
-            self.left.1 -= 1;
-            self.cell.y = self.cell.y.saturating_add(self.step.1);
-            height
+            let step = self.y.cross();
+            self.cell.y = self.cell.y.saturating_add(step);
+            self.height_at(y)
         };
         let entered = core::mem::replace(&mut self.entered, left);
         Some(Crossing {
@@ -129,10 +156,8 @@ pub fn clearance(
     to: Point,
     mut height: impl FnMut(Cell) -> Option<Height>,
 ) -> Option<f32> {
-    let is_forward = (from.x, from.y, from.z) <= (to.x, to.y, to.z);
-    let (first, last) = if is_forward { (from, to) } else { (to, from) };
     let mut least = f32::INFINITY;
-    for crossing in Columns::new(first, last) {
+    for crossing in Columns::new(from, to) {
         let low = crossing.entered.min(crossing.left);
         least = least.min(low - height(crossing.cell)?.cells());
     }
@@ -195,6 +220,9 @@ mod tests {
         ) {
             let ground = |cell: Cell| heights.get(cell.y as usize * 21 + cell.x as usize)?.map(Height);
             prop_assert_eq!(clearance(from, to, ground), clearance(to, from, ground));
+            let way: Vec<_> = Columns::new(from, to).map(|it| (it.cell, it.entered, it.left)).collect();
+            let back: Vec<_> = Columns::new(to, from).map(|it| (it.cell, it.left, it.entered)).collect();
+            prop_assert!(way.iter().eq(back.iter().rev()), "{:?} {:?}", way, back);
         }
 
         /// A sensor that looks down misses nothing of a surface: no column whose top is higher

@@ -7,8 +7,8 @@
 //! A robot that may have to go home keeps a way there: a chain of straight parts over
 //! corners, whose last one is home. Each part is one flight, or it is open to
 //! both sides too, so that places on it may be rounded. A flight between the least altitude
-//! and the ceiling is open back, too, for [`clearance`](crate::surface::clearance) is the same
-//! both ways. After each flight either the last
+//! and the ceiling is open back, too, for a line crosses the same
+//! [columns](crate::surface::Columns) both ways. After each flight either the last
 //! corner is still straight ahead, or the place that the robot comes from is a new one; then
 //! corners are left out that need not be there. So the way is known at any time, without a
 //! search. It takes as many ticks as its parts take steps, climbs included: a part of length

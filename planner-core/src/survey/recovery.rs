@@ -54,6 +54,7 @@ use crate::point::Point;
 use crate::robot::{Action, Stop, Wait};
 use crate::surface::Columns;
 use crate::tile::{TileIndex, Tiles, bits};
+use crate::zeroed::Maybe;
 use way::Way;
 
 /// Height over the least altitude at which it flies.
@@ -85,8 +86,8 @@ pub struct Recovery<const TW: usize, const TH: usize> {
     tried: Tiles<u64, TW, TH>,
     /// Columns that refused a flight in this round.
     closed: Tiles<u64, TW, TH>,
-    /// The column closed last, and whether by a robot that was heard of.
-    obstacle: (Cell, bool),
+    /// What refused a flight last in this spell, and whether it is a robot that was heard of.
+    obstacle: Maybe<(Cell, bool)>,
     /// Frontiers that were given up in this round for what was in the way, and whether
     /// there are any.
     barred: Tiles<u64, TW, TH>,
@@ -130,7 +131,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         Self {
             tried: Tiles::all(0),
             closed: Tiles::all(0),
-            obstacle: (Cell::new(0, 0), false),
+            obstacle: Maybe::Nothing,
             barred: Tiles::all(0),
             is_barred: false,
             careful: false,
@@ -177,6 +178,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// Nothing counts as tried.
     fn begin_spell(&mut self) {
         self.tried.fill(0);
+        self.obstacle = Maybe::Nothing;
         self.bumps = 0;
         self.round = 0;
         self.rest = 0;
@@ -384,13 +386,13 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         let here = knowledge.position().cell();
         match (crossed.next(), crossed.next()) {
             (Some(only), None) => {
-                self.obstacle = (only.cell, false);
+                self.obstacle = Maybe::Just((only.cell, false));
                 self.close(only.cell, here);
             }
             // Of several any may be the one: they are tried one by one.
             (Some(_), Some(_)) => {}
             (None, _) => {
-                self.obstacle = (here, false);
+                self.obstacle = Maybe::Just((here, false));
                 if let Some(goal) = self.goal {
                     self.bar(goal);
                 }
@@ -447,7 +449,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         let waits = self.waits > 0;
         self.waits = self.waits.saturating_sub(1);
         if !waits {
-            self.obstacle = (robot.cell(), true);
+            self.obstacle = Maybe::Just((robot.cell(), true));
         }
         waits
     }
@@ -455,19 +457,21 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// Nothing is left to try: it is tried again, or the robot stops.
     fn end_round(&mut self, knowledge: &mut Knowledge<TW, TH>) -> Action<Point> {
         let frontiers = knowledge.surface().frontiers();
-        if !self.is_barred {
-            let at = knowledge.unseen_place();
-            return knowledge.stop(Stop::Unseen { frontiers, at });
-        }
-        if self.round < ROUNDS {
+        if self.is_barred && self.round < ROUNDS {
             self.rest = REST << self.round;
             self.round = self.round.saturating_add(1);
             self.begin_round();
             return knowledge.wait(Wait::Closed);
         }
-        knowledge.stop(match self.obstacle {
-            (at, false) => Stop::Blocked { frontiers, at },
-            (at, true) => Stop::Held { frontiers, at },
+        // Where nothing refused, columns were closed that cannot be flown to over known ground.
+        let obstacle = self.obstacle.get().filter(|_| self.is_barred);
+        knowledge.stop(match obstacle {
+            None => Stop::Unseen {
+                frontiers,
+                at: knowledge.unseen_place(),
+            },
+            Some((at, false)) => Stop::Blocked { frontiers, at },
+            Some((at, true)) => Stop::Held { frontiers, at },
         })
     }
 

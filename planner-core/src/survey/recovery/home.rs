@@ -7,6 +7,7 @@ use crate::point::Point;
 use crate::robot::{Action, Stop, Wait};
 use crate::surface::Columns;
 use crate::survey::Knowledge;
+use crate::zeroed::Maybe;
 
 /// Flights round others, and ticks of waiting for them, before it looks for a way round.
 const DETOURS: u8 = 64;
@@ -84,7 +85,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         self.careful = true;
         self.climbing = false;
         self.goal = Some(home);
-        self.obstacle = (home, false);
+        self.obstacle = Maybe::Just((home, false));
         self.closed.fill(0);
         self.legs = knowledge.surface().known_columns();
         self.leg = knowledge.position().cell();
@@ -99,11 +100,11 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         let mut crossed = Columns::new(from, to).skip(1);
         match (crossed.next(), crossed.next()) {
             (Some(only), None) => {
-                self.obstacle = (only.cell, false);
+                self.obstacle = Maybe::Just((only.cell, false));
                 self.close(only.cell, here);
             }
             (Some(_), Some(_)) => {}
-            (None, _) => self.obstacle = (here, false),
+            (None, _) => self.obstacle = Maybe::Just((here, false)),
         }
     }
 
@@ -178,9 +179,11 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
             return knowledge.wait(Wait::Closed);
         }
         let frontiers = knowledge.surface().frontiers();
-        knowledge.end_errand(match self.obstacle {
-            (at, false) => Stop::Blocked { frontiers, at },
-            (at, true) => Stop::Held { frontiers, at },
+        let goal = self.goal.unwrap_or(knowledge.position().cell());
+        let (at, is_robot) = self.obstacle.get().unwrap_or((goal, false));
+        knowledge.end_errand(match is_robot {
+            false => Stop::Blocked { frontiers, at },
+            true => Stop::Held { frontiers, at },
         })
     }
 }

@@ -263,5 +263,6 @@ fn made_voxels(from: &mut Bytes<'_>) -> VoxelTrace {
         contacts: 0,
         bumps: 0,
         false_claims: 0,
+        wrong: Vec::new(),
     }
 }

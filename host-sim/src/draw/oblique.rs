@@ -45,10 +45,10 @@ pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
     oblique(trace.extent, highest, blocks.collect(), &ways)
 }
 
-/// What had been seen of a scene of voxels after `tick` steps, with the ways flown.
+/// What the robots took for occupied in a scene of voxels after `tick` steps, with the ways flown.
 pub fn oblique_voxels(trace: &VoxelTrace, tick: u32) -> RgbImage {
-    let known = trace.found.iter().take_while(|found| found.0 <= tick);
-    let blocks = known.filter(|found| found.2).map(|(_, voxel, _)| Block {
+    let occupied = trace.map(tick).into_iter().filter(|found| found.1);
+    let blocks = occupied.map(|(voxel, _)| Block {
         cell: voxel.cell(),
         bottom: f32::from(voxel.z),
         top: f32::from(voxel.z) + 1.0,

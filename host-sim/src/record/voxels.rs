@@ -1,9 +1,11 @@
 //! What a run among voxels leaves behind.
 
-use planner_core::Stop;
 mod file;
 
+use planner_core::Stop;
 use planner_core::volume::{Heading, Voxel};
+
+use serde::{Deserialize, Serialize};
 
 use crate::scenario::voxels::Scenario;
 use crate::scene::octree::OcTree;
@@ -24,8 +26,8 @@ pub struct VoxelTrace {
     pub headings: Vec<Vec<Heading>>,
     /// Every decision, in order.
     pub records: Vec<Record>,
-    /// Voxels in the order in which they were seen, each with the step and with whether
-    /// it is occupied.
+    /// Voxels in the order in which they were seen, each with the step and with whether the
+    /// robots take it for occupied; once more in each step in which that has changed.
     pub found: Vec<(u32, Voxel, bool)>,
     /// Occupied voxels that can be seen from any place that can be reached: all that
     /// there is to see.
@@ -47,6 +49,17 @@ pub struct VoxelTrace {
     /// Living robots that say in the end that all that they could see is known, while a voxel
     /// that can be seen is not known to them.
     pub false_claims: u32,
+    /// What each robot's map had wrong in the end; empty if no look may mistake anything.
+    pub wrong: Vec<Wrong>,
+}
+
+/// What a map says otherwise than it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wrong {
+    /// Free voxels that are occupied on it.
+    pub closed: u32,
+    /// Occupied voxels that are free on it.
+    pub opened: u32,
 }
 
 impl VoxelTrace {
@@ -73,14 +86,25 @@ impl VoxelTrace {
         all.is_some() && self.seen.last() == all && self.violations == 0
     }
 
-    /// What had been seen after `tick` steps as an octree, free voxels included, with the
-    /// coordinates and the resolution of the scene's file.
+    /// The robots' map after `tick` steps: voxels that were seen, each with whether it is taken for
+    /// occupied.
+    pub fn map(&self, tick: u32) -> Vec<(Voxel, bool)> {
+        let mut told = Marks::of(&self.scene);
+        let known = self.found.partition_point(|found| found.0 <= tick);
+        let newest_first = self.found[..known].iter().rev();
+        let newest = newest_first.filter(|found| told.insert(&self.scene, found.1));
+        let mut map: Vec<_> = newest.map(|found| (found.1, found.2)).collect();
+        map.reverse();
+        map
+    }
+
+    /// That map as an octree, free voxels included, with the coordinates and the resolution of the
+    /// scene's file.
     pub fn octree(&self, tick: u32) -> OcTree {
         let frame = self.scene.frame().unwrap_or(Frame::PLAIN);
         let mut tree = OcTree::new(frame.voxel_size);
-        let known = self.found.iter().take_while(|found| found.0 <= tick);
-        for (_, voxel, occupied) in known {
-            tree.insert(frame.key(*voxel), *occupied);
+        for (voxel, occupied) in self.map(tick) {
+            tree.insert(frame.key(voxel), occupied);
         }
         tree
     }

@@ -17,7 +17,7 @@ use planner_core::{Action, ExtentError, RobotId, Stop};
 use crate::baselines::voxels::{Body, Chart, assign};
 use crate::dice::{Dice, Lot};
 use crate::medium::{Claim, Radio, Station, any_voxel, voxel_frame};
-use crate::record::voxels::{Record, VoxelTrace};
+use crate::record::voxels::{Record, VoxelTrace, Wrong};
 use crate::record::{Deed, Nothing};
 use crate::robot::Sent;
 use crate::run::Here;
@@ -138,6 +138,18 @@ impl Station for Robot {
     }
 }
 
+/// Whether `voxel` is occupied on the joined map of `robots`.
+fn is_taken_for_occupied(robots: &[Robot], voxel: Voxel) -> bool {
+    let (tile, bit) = TileIndex::of(voxel.cell()).expect("inside");
+    let (mut known, mut withdrawn) = (0, 0);
+    for robot in robots {
+        let patch = robot.planner.patch(tile, voxel.z as u8);
+        known |= patch.known & patch.occupied;
+        withdrawn |= patch.withdrawn();
+    }
+    known & !withdrawn & bit != 0
+}
+
 /// Runs `scenario` in `scene`.
 ///
 /// # Errors
@@ -173,6 +185,8 @@ pub struct Simulation {
     radio: Radio<Scene>,
     visible: Marks,
     known: Marks,
+    /// Voxels that the robots take for occupied, where looks may err.
+    occupied: Marks,
     /// What a centre knows that sends the robots.
     centre: Option<Chart>,
     /// Occupied voxels seen.
@@ -246,9 +260,11 @@ impl Simulation {
                 contacts: 0,
                 bumps: 0,
                 false_claims: 0,
+                wrong: Vec::new(),
             },
             radio: Radio::new(&scenario.conditions, scene.clone()),
             known: Marks::of(&scene),
+            occupied: Marks::of(&scene),
             centre: (scenario.planner == Planner::Greedy)
                 .then(|| Chart::new(scene.extent(), scene.levels(), body)),
             scene,
@@ -286,6 +302,25 @@ impl Simulation {
         wrong.count() as u32
     }
 
+    /// What each robot's map says otherwise than it is.
+    fn wrong(&self) -> Vec<Wrong> {
+        if !self.trace.scenario.conditions.trouble.mistakes_places() {
+            return Vec::new();
+        }
+        let of = |robot: &Robot| {
+            let mut wrong = Wrong::default();
+            for voxel in self.scene.voxels() {
+                match (self.scene.content(voxel), robot.planner.content(voxel)) {
+                    (Some(Content::Free), Content::Occupied) => wrong.closed += 1,
+                    (Some(Content::Occupied), Content::Free) => wrong.opened += 1,
+                    _ => {}
+                }
+            }
+            wrong
+        };
+        self.robots.iter().map(of).collect()
+    }
+
     /// One step of the fleet; false if the run is over, and then nothing changes any more.
     pub fn step(&mut self) -> bool {
         // In the last step robots look, and nobody flies on.
@@ -308,6 +343,7 @@ impl Simulation {
         self.trace.all_stopped = !going;
         if !going || self.is_last() {
             self.trace.false_claims = self.false_claims();
+            self.trace.wrong = self.wrong();
             return false;
         }
         for (robot, way) in self.robots.iter().zip(&mut self.trace.ways) {
@@ -346,6 +382,7 @@ impl Simulation {
     }
 
     fn sense(&mut self) {
+        let first = self.trace.found.len();
         for robot in self.robots.iter_mut().filter(|robot| robot.alive) {
             let Config { range, field, .. } = self.config;
             robot.view = look_towards(&self.scene, robot.at, range, field, robot.heading);
@@ -367,6 +404,27 @@ impl Simulation {
             robot.planner.observe(at, heading, &told);
             if let Some(centre) = &mut self.centre {
                 centre.learn(&robot.view);
+            }
+        }
+        if self.trace.scenario.conditions.trouble.mistakes_places() {
+            self.believe(first);
+        }
+    }
+
+    /// What was found in this step, from number `first` on, is as the robots take it for, and so is
+    /// all that they look at.
+    fn believe(&mut self, first: usize) {
+        let (scene, robots) = (&self.scene, &self.robots);
+        for (_, voxel, occupied) in &mut self.trace.found[first..] {
+            *occupied = is_taken_for_occupied(robots, *voxel);
+            self.occupied.put(scene, *voxel, *occupied);
+        }
+        let looking = robots.iter().filter(|robot| robot.alive);
+        let views = looking.flat_map(|robot| &robot.view);
+        for &(voxel, _) in views.filter(|(voxel, _)| scene.is_known(*voxel)) {
+            let occupied = is_taken_for_occupied(robots, voxel);
+            if self.occupied.put(scene, voxel, occupied) {
+                self.trace.found.push((self.now, voxel, occupied));
             }
         }
     }

@@ -120,6 +120,11 @@ impl Trouble {
         self.can_open_walls() || self.false_walls > 0.0
     }
 
+    /// Whether a look may take what is free for occupied, or the other way round.
+    pub(crate) fn mistakes_places(&self) -> bool {
+        self.false_walls > 0.0 || self.false_frees > 0.0
+    }
+
     /// Whether a look may tell a robot that it can go where it cannot.
     pub(crate) fn can_open_walls(&self) -> bool {
         self.false_frees > 0.0 || self.misplaced > 0.0 || self.drift > 0

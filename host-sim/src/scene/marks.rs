@@ -32,6 +32,19 @@ impl Marks {
         is_new
     }
 
+    /// Marks `voxel` or takes its mark away; says whether that was news.
+    pub(crate) fn put(&mut self, scene: &Scene, voxel: Voxel, is_marked: bool) -> bool {
+        if is_marked {
+            return self.insert(scene, voxel);
+        }
+        let is_news = self.contains(scene, voxel);
+        if let Some(index) = scene.index(voxel).filter(|_| is_news) {
+            self.words[index / 64] &= !(1 << (index % 64));
+            self.count -= 1;
+        }
+        is_news
+    }
+
     pub(crate) fn contains(&self, scene: &Scene, voxel: Voxel) -> bool {
         let index = scene.index(voxel);
         index.is_some_and(|index| self.words[index / 64] & 1 << (index % 64) != 0)

@@ -63,6 +63,10 @@ pub struct RobotSummary {
     pub metres: Option<f64>,
     /// Voxels on its own map.
     pub cells_known: u32,
+    /// Free voxels that are occupied on it.
+    pub cells_closed: u32,
+    /// Occupied voxels that are free on it.
+    pub cells_opened: u32,
     /// Work of its planner over the run.
     pub work: u64,
     /// Frames sent by radio.
@@ -148,11 +152,14 @@ impl RobotSummary {
         let frame = trace.scene.frame();
         let id = RobotId(robot as u8);
         let deeds = own().map(|record| (record.tick, record.deed));
+        let wrong = trace.wrong.get(robot).copied().unwrap_or_default();
         Self {
             start: (way[0].x, way[0].y, way[0].z),
             steps,
             metres: frame.map(|frame| steps as f64 * frame.voxel_size),
             cells_known: own().next_back().map_or(0, |record| record.known),
+            cells_closed: wrong.closed,
+            cells_opened: wrong.opened,
             work: own().map(|record| u64::from(record.work)).sum(),
             frames_sent: own().map(|record| record.sent.frames).sum(),
             bytes_sent: own().map(|record| record.sent.bytes).sum(),

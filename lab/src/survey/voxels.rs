@@ -80,7 +80,8 @@ impl Voxels {
     fn take(&mut self) {
         let trace = self.source.trace();
         for &(step, voxel, _) in &trace.found[self.taken..] {
-            self.seen_since[index(&trace.scene, voxel)] = step;
+            let since = &mut self.seen_since[index(&trace.scene, voxel)];
+            *since = (*since).min(step);
         }
         self.taken = trace.found.len();
     }

@@ -33,6 +33,10 @@ impl Sensor {
 /// Looks in a row that contradict the map before it changes.
 const FLIPS: u8 = 3;
 
+/// Changes at doubts since anything was learnt after which nothing free becomes occupied, and what
+/// looks have missed is not looked for any more. Nothing is withdrawn after `u8::MAX` of them.
+const CHANGES: u8 = 32;
+
 /// Voxels that are doubted at a time.
 const DOUBTS: usize = 32;
 
@@ -57,6 +61,9 @@ pub(super) struct Doubts {
     ahead: Vec<Voxel, AHEAD>,
     /// Ticks that a step has waited for it.
     held: u8,
+    /// Changes at doubts since so many voxels were known.
+    changes: u8,
+    known: u32,
 }
 
 impl Doubts {
@@ -65,7 +72,28 @@ impl Doubts {
             against: Vec::new(),
             ahead: Vec::new(),
             held: 0,
+            changes: 0,
+            known: 0,
         }
+    }
+
+    /// What was given up is tried again.
+    pub(super) fn renew(&mut self) {
+        self.changes = 0;
+    }
+
+    /// Whether the map, with so many `known` voxels, has changed often without anything learnt.
+    pub(super) fn is_weary(&self, known: u32) -> bool {
+        self.known == known && self.changes >= CHANGES
+    }
+
+    /// Whether the map may change once more, so that something becomes occupied or free.
+    fn may_change(&mut self, known: u32, occupied: bool) -> bool {
+        if self.known != known {
+            self.known = known;
+            self.changes = 0;
+        }
+        self.changes < if occupied { CHANGES } else { u8::MAX }
     }
 
     /// A look begins.
@@ -151,9 +179,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let (here, range) = (self.position, u32::from(self.range));
         let is_in_range = |at: Voxel| at.distance_squared(here) <= range * range;
         let is_final = self.volume.is_withdrawn(voxel) || !self.volume.contains(voxel);
-        if is_final || !self.doubts.add(voxel, is_in_range) {
+        let is_held = self.stopped || !self.doubts.may_change(self.volume.known_voxels(), occupied);
+        if is_final || is_held || !self.doubts.add(voxel, is_in_range) {
             return false;
         }
+        self.doubts.changes = self.doubts.changes.saturating_add(1);
         match occupied {
             true => self.volume.learn(voxel, true),
             false => self.withdraw(voxel),

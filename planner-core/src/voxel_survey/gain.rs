@@ -100,17 +100,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn count(&mut self, pose: Voxel, enough: u32, between: Between) -> (u32, Heading) {
         let (volume, field) = (&self.volume, self.field);
         let looked = self.looked_from(pose);
+        let given_up = self
+            .doubts
+            .is_weary(volume.known_voxels())
+            .then_some(&self.missed);
+        let wanted = |tile, z| match (volume.unknown(tile, z), given_up) {
+            (unknown, Some(missed)) if unknown != 0 => unknown & !missed.word(tile, z),
+            (unknown, _) => unknown,
+        };
         let mut view = View::new(pose, self.range);
         let mut gains = Gains::default();
         let mut most = 0u32;
         let mut rows = 0u32;
-        if view.aim(|tile, z| volume.unknown(tile, z)) {
+        if view.aim(wanted) {
             let _ = view.look(
                 |tile, z| match between {
                     Between::Free => volume.bad(tile, z),
                     Between::NotOccupied => volume.occupied(tile, z),
                 },
-                |tile, z| volume.unknown(tile, z),
+                wanted,
                 |row| {
                     if field.is_whole() {
                         most = most.saturating_add(row.count());

@@ -72,13 +72,17 @@
 //! becomes occupied, and occupied becomes *free again*, for good, which others are told of. Sight
 //! grows then: poses within range are not done any more, whoever brought it. Each voxel rises
 //! over three levels at most, so that happens at most N times, and poses become done at most N
-//! times in between: progress stays bounded. A pose is done only once nothing unknown is in sight,
-//! or it was looked from four times in a row: a look that something hides a part of is made again.
-//! Claim: what it leaves out, looks have shown wrong three times in a row, or each time that they
-//! could.
+//! times in between: progress stays bounded. That is long where looks err often. So after 32
+//! changes of known voxels by own looks without anything unknown learnt, nothing free becomes
+//! occupied, and what looks should have shown and did not is not looked for any more; after 255
+//! no look changes what is known. A robot that has stopped does not change it either. A pose is
+//! done only once nothing unknown is in sight, or it was looked from four times in a row: a look
+//! that something hides a part of is made again. Claim: what it leaves out, looks have shown wrong
+//! three times in a row, or each time that they could, unless the map was held before.
 //!
 //! Nobody flies into what the last look has shown, whatever the map says: the step waits, and
-//! after four ticks its end is closed, as if it were not followed.
+//! after four ticks its end is closed, as if it were not followed. Rounds in which closed voxels
+//! are opened begin anew only once something unknown was learnt.
 //!
 //! Robots do not stand in each other's way: several may share a voxel. What others tell only saves
 //! looks; nothing waits for it.
@@ -414,6 +418,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.stopped = false;
         self.silent = 0;
         self.turn_to = Turn::NONE;
+        self.doubts.renew();
         self.done.reset();
         self.missed.reset();
         self.has_missed = false;

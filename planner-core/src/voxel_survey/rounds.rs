@@ -46,7 +46,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Nothing is left to fly to: what is closed is tried again, or the robot stops.
     pub(super) fn end_round(&mut self) -> Action<Voxel, Voxel> {
         if self.is_closed {
-            let known = self.volume.age();
+            let known = self.volume.known_voxels();
             if known != self.round_known {
                 self.round_known = known;
                 self.round = 0;
@@ -88,11 +88,18 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
     }
 
-    /// The first voxel that a look should have shown, and that is still unknown.
+    /// The first voxel that a look should have shown, and that is still unknown beside a free
+    /// one: others are behind what has turned out to be occupied.
     ///
-    /// Cost: two words for each tile of a level.
+    /// Cost: 15 words for each tile of a level.
     fn missed_place(&self) -> Option<Voxel> {
-        self.first_of(|tile, z| self.missed.word(tile, z) & self.volume.unknown(tile, z))
+        self.first_of(|tile, z| {
+            let missed = self.missed.word(tile, z);
+            match missed {
+                0 => 0,
+                _ => missed & self.volume.unknown_beside_free(tile, z),
+            }
+        })
     }
 
     /// An unknown voxel: beside the robot, or else the first beside a free one.

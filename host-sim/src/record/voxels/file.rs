@@ -3,16 +3,18 @@
 //! They are as [`record`](crate::record) says; the header holds the scenario, the scene as
 //! rows of `#` occupied, `.` free and `?` unknown, level by level from below, where the robots started,
 //! where their sensors were turned step by step (a digit each, in eighths of a turn from east
-//! over south), whether every one had stopped and why each had; the columns are the fields of a
+//! over south), whether every one had stopped and why each had, and what looks that err have
+//! mistaken; the columns are the fields of a
 //! [`Record`].
 
+use std::collections::HashMap;
 use std::io::{self, BufRead};
 
 use planner_core::volume::{Content, Heading, Voxel};
 use planner_core::{Extent, Stop};
 use serde::{Deserialize, Serialize};
 
-use super::VoxelTrace;
+use super::{VoxelTrace, Wrong};
 use crate::record::{self, Deed, Format, Kind, Nothing, Objection, Order, TraceError, wrong};
 use crate::scenario::ScenarioError;
 use crate::scenario::voxels::Scenario;
@@ -31,6 +33,12 @@ struct Header {
     all_stopped: bool,
     /// Of each robot at the end.
     stops: Vec<Option<Stop<Voxel>>>,
+    /// Of looks that err: what was found otherwise than it is, and what changed later.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    mistaken: Vec<(u32, [i16; 3], bool)>,
+    /// What each robot's map had wrong in the end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    wrong: Vec<Wrong>,
     world: Levels,
 }
 
@@ -92,6 +100,8 @@ impl VoxelTrace {
             headings: self.headings.iter().map(|it| digits(it)).collect(),
             all_stopped: self.all_stopped,
             stops: self.stops.clone(),
+            mistaken: self.mistaken(),
+            wrong: self.wrong.clone(),
             world: Levels::of(&self.scene),
         };
         record::write(to, &header, &self.records)
@@ -116,6 +126,9 @@ impl VoxelTrace {
         };
         of_robots("starts", header.starts.len())?;
         of_robots("ends", header.stops.len())?;
+        if !header.wrong.is_empty() {
+            of_robots("maps", header.wrong.len())?;
+        }
         let headings = header.headings.iter().map(|text| headings(text));
         let headings = headings
             .collect::<Option<Vec<_>>>()
@@ -159,6 +172,7 @@ impl VoxelTrace {
             contacts: 0,
             bumps: 0,
             false_claims: 0,
+            wrong: header.wrong,
             scenario,
             scene,
         };
@@ -178,6 +192,7 @@ impl VoxelTrace {
             return Err(TraceError::Survey(reason));
         }
         trace.look_again();
+        trace.mistake(&header.mistaken)?;
         match trace.visible {
             0 => Err(ScenarioError::NothingToSee.into()),
             _ => Ok(trace),
@@ -244,6 +259,45 @@ impl VoxelTrace {
         };
         (self.violations, self.contacts) = (violations as u32, contacts as u32);
         self.visible = visible.count();
+    }
+
+    /// What was found otherwise than it is, and what changed later: all that does not follow from
+    /// the records.
+    fn mistaken(&self) -> Vec<(u32, [i16; 3], bool)> {
+        let scene = &self.scene;
+        let mut known = Marks::of(scene);
+        let is_true = |voxel, occupied| {
+            let is_occupied = scene.content(voxel) == Some(Content::Occupied);
+            is_occupied == occupied
+        };
+        let found = self.found.iter();
+        let others =
+            found.filter(|found| !known.insert(scene, found.1) || !is_true(found.1, found.2));
+        let entry = |&(tick, Voxel { x, y, z }, occupied)| (tick, [x, y, z], occupied);
+        others.map(entry).collect()
+    }
+
+    /// Takes that in, where all that was found is as it is.
+    ///
+    /// # Errors
+    /// Something that was not seen until then.
+    fn mistake(&mut self, mistaken: &[(u32, [i16; 3], bool)]) -> Result<(), TraceError> {
+        let found = self.found.iter().zip(0..);
+        let places: HashMap<Voxel, (u32, usize)> =
+            found.map(|(found, i)| (found.1, (found.0, i))).collect();
+        for &(tick, [x, y, z], occupied) in mistaken {
+            let voxel = Voxel::new(x, y, z);
+            match places.get(&voxel) {
+                Some(&(first, i)) if first == tick => self.found[i].2 = occupied,
+                Some(&(first, _)) if first < tick => self.found.push((tick, voxel, occupied)),
+                _ => {
+                    let reason = format!("{voxel} was mistaken in step {tick} and not seen");
+                    return Err(TraceError::Survey(reason));
+                }
+            }
+        }
+        self.found.sort_by_key(|found| found.0);
+        Ok(())
     }
 
     /// 16 hex digits that differ if any record does.
@@ -330,6 +384,7 @@ mod tests {
     use super::*;
     use crate::damage::assert_refused;
     use crate::run::voxels::{Simulation, run};
+    use crate::scenario::Preset;
 
     fn trace(max_ticks: u32) -> VoxelTrace {
         let mut scenario = Scenario::new(2, 4);
@@ -392,6 +447,34 @@ mod tests {
                 (read.visible, read.violations, read.all_stopped),
                 (trace.visible, 0, max_ticks > 60)
             );
+        }
+    }
+
+    #[test]
+    fn what_was_mistaken_survives_too() {
+        let mut scenario = Scenario::new(2, 4);
+        scenario.conditions.max_ticks = 150;
+        scenario.conditions.trouble.false_walls = 0.05;
+        scenario.conditions.trouble.false_frees = 0.02;
+        for preset in [Preset::Truthful, Preset::Rangers] {
+            scenario.conditions.preset = preset;
+            let trace = run(&Scene::town(1, 24), &scenario).unwrap();
+            let read = VoxelTrace::read(file(&trace).as_bytes()).unwrap();
+            assert_eq!((&read.found, &read.wrong), (&trace.found, &trace.wrong));
+            assert_eq!(
+                (read.seen.last(), read.octree(150)),
+                (trace.seen.last(), trace.octree(150))
+            );
+            let is_solid = |voxel| trace.scene.is_solid(voxel);
+            let map = trace.map(150);
+            let closed = map
+                .iter()
+                .filter(|(at, occupied)| *occupied && !is_solid(*at))
+                .count();
+            assert!(closed > 0);
+            assert!(trace.wrong.iter().all(|wrong| wrong.closed > 0));
+            let damaged = file(&trace).replacen("\"mistaken\":[[0,", "\"mistaken\":[[-1,", 1);
+            assert!(VoxelTrace::read(damaged.as_bytes()).is_err());
         }
     }
 

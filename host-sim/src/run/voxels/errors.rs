@@ -19,7 +19,7 @@ pub(super) fn told<'a>(
         false_frees,
         ..
     } = *trouble;
-    if false_walls <= 0.0 && false_frees <= 0.0 {
+    if !trouble.mistakes_places() {
         return Cow::Borrowed(view);
     }
     let mistaken = |&(voxel, occupied): &(Voxel, bool)| {

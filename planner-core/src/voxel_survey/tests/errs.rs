@@ -36,6 +36,19 @@ fn erring_look(
     look(&taken, eye)
 }
 
+/// What such a sensor shows that sees as far as there is something to see.
+fn told(walls: &BTreeSet<Voxel>, eye: Voxel, noise: Noise, dice: &mut Rng) -> Vec<(Voxel, bool)> {
+    let mut view = look(walls, eye);
+    for (voxel, occupied) in &mut view {
+        let share = match *occupied {
+            true => noise.false_frees,
+            false => noise.false_walls,
+        };
+        *occupied ^= *voxel != eye && (dice.next_u32() as f32) < share * u32::MAX as f32;
+    }
+    view
+}
+
 /// What became of a flight.
 struct End {
     stop: Stop<Voxel>,
@@ -44,12 +57,23 @@ struct End {
 }
 
 fn fly(walls: &BTreeSet<Voxel>, sensor: Sensor, noise: Noise, seed: u64) -> Option<End> {
+    fly_with(erring_look, walls, sensor, noise, seed, 20_000)
+}
+
+fn fly_with(
+    sense: fn(&BTreeSet<Voxel>, Voxel, Noise, &mut Rng) -> Vec<(Voxel, bool)>,
+    walls: &BTreeSet<Voxel>,
+    sensor: Sensor,
+    noise: Noise,
+    seed: u64,
+    most: u32,
+) -> Option<End> {
     let config = Config { sensor, ..CONFIG };
     let mut robot = Robot::new(config, RobotId(0), EXTENT, LEVELS).unwrap();
     let mut dice = Rng::new(seed, 0);
     let (mut at, mut touches) = (START, 0);
-    for _ in 0..20_000 {
-        robot.observe(at, &erring_look(walls, at, noise, &mut dice));
+    for _ in 0..most {
+        robot.observe(at, &sense(walls, at, noise, &mut dice));
         let action = robot.tick();
         assert!(robot.work() <= MOST_WORK, "{}", robot.work());
         match action {
@@ -139,6 +163,74 @@ proptest! {
             prop_assert_eq!(end.touches, 0);
         }
     }
+}
+
+/// Ticks within which a robot stops in a box of 770 voxels, whatever its sensor shows.
+const MOST_TICKS: u32 = 5_000;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// It stops in time, what it names is unknown, and it goes on to say so.
+    #[test]
+    fn a_robot_stops_in_time_and_tells_the_truth_however_often_its_sensor_errs(
+        (scattered, slabs) in walls(),
+        false_walls in 0f32..0.2,
+        false_frees in prop_oneof![Just(0f32), 0f32..0.2],
+        is_short in any::<bool>(),
+        seed in any::<u64>(),
+    ) {
+        let noise = Noise { false_walls, false_frees };
+        let walls = scene(&scattered, &slabs);
+        let sense = if is_short { erring_look } else { told };
+        let end = fly_with(sense, &walls, Sensor::Errs, noise, seed, MOST_TICKS);
+        let End { stop, mut robot, .. } = end.expect("it ends");
+        prop_assert_eq!(stop.left(), robot.volume().frontiers());
+        match stop {
+            Stop::Complete => prop_assert_eq!(stop.left(), 0),
+            Stop::Unseen { at, frontiers } => {
+                prop_assert_eq!(robot.volume().content(at), Content::Unknown);
+                prop_assert!(frontiers > 0);
+            }
+            Stop::OutOfReach { frontiers } => prop_assert!(frontiers > 0),
+            Stop::Blocked { at, .. } => prop_assert!(is_inside(at)),
+            other => prop_assert!(false, "{other}"),
+        }
+        // Where it stands nothing is left to learn: it stays stopped, and its map as it is.
+        let (known, withdrawn) = (robot.volume().known_voxels(), robot.volume().withdrawn());
+        let here = robot.position();
+        let mut dice = Rng::new(seed, 2);
+        for _ in 0..20 {
+            let mut view = sense(&walls, here, noise, &mut dice);
+            view.retain(|&(at, _)| robot.volume().content(at) != Content::Unknown);
+            robot.observe(here, &view);
+            prop_assert_eq!(robot.tick(), Action::Stop(stop));
+        }
+        let now = (robot.volume().known_voxels(), robot.volume().withdrawn());
+        prop_assert_eq!(now, (known, withdrawn));
+    }
+}
+
+/// Once the map has changed often without anything learnt, no wall comes up where nothing is, and in
+/// the end none goes either; what is learnt begins anew.
+#[test]
+fn a_map_that_changes_on_and_on_is_held() {
+    let mut robot = misled(Sensor::Errs, WALL);
+    let near: Vec<Voxel> = all()
+        .filter(|&at| robot.volume().content(at) == Content::Free && at != START)
+        .collect();
+    let contradict =
+        |robot: &mut Robot, at: Voxel, occupied: bool| (0..3).any(|_| robot.weigh(at, occupied));
+    for (&at, i) in near.iter().zip(0..) {
+        assert_eq!(contradict(&mut robot, at, true), i < 32, "{i}");
+        robot.doubts.look();
+    }
+    assert!(contradict(&mut robot, WALL, false));
+    let unknown = all().find(|&at| robot.volume().content(at) == Content::Unknown);
+    assert!(robot.weigh(unknown.unwrap(), false));
+    assert!(contradict(&mut robot, *near.last().unwrap(), true));
+    robot.stopped = true;
+    assert!(!contradict(&mut robot, *near.last().unwrap(), false));
 }
 
 /// A robot of which all looks are true, in a map with a wall that nobody sees.

@@ -126,6 +126,11 @@
 //! different cells, and a role may find its plan worthless in the next one. After four
 //! plans lost so, bodies are obstacles to it until a round ends or it learns something,
 //! and each robot stops as shown above, with a reason that names the one in its way.
+//!
+//! [`Motion::Moved`]: crate::Motion::Moved
+//! [`Motion::Blocked`]: crate::Motion::Blocked
+//! [`Motion::Held`]: crate::Motion::Held
+//! [`Inspect::narrow_cells`]: crate::planner::Inspect::narrow_cells
 
 mod ahead;
 mod aside;

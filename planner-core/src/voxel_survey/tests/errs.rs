@@ -49,6 +49,9 @@ fn told(walls: &BTreeSet<Voxel>, eye: Voxel, noise: Noise, dice: &mut Rng) -> Ve
     view
 }
 
+/// What a sensor shows of walls from a place.
+type Sense = fn(&BTreeSet<Voxel>, Voxel, Noise, &mut Rng) -> Vec<(Voxel, bool)>;
+
 /// What became of a flight.
 struct End {
     stop: Stop<Voxel>,
@@ -61,7 +64,7 @@ fn fly(walls: &BTreeSet<Voxel>, sensor: Sensor, noise: Noise, seed: u64) -> Opti
 }
 
 fn fly_with(
-    sense: fn(&BTreeSet<Voxel>, Voxel, Noise, &mut Rng) -> Vec<(Voxel, bool)>,
+    sense: Sense,
     walls: &BTreeSet<Voxel>,
     sensor: Sensor,
     noise: Noise,

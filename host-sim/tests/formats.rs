@@ -121,6 +121,7 @@ fn summaries_and_traces() {
         "survey --terrain town:1 --size 24 --sensor camera --max-ticks 9 --wind 0.2 --clearance 0 --out 6".into(),
         "survey --scene 6/map.bt --max-ticks 3 --out 7 --start 2.5,2.5,2.5".into(),
         "survey --scene 6/map.ply --voxel-size 1 --max-ticks 3 --out 8".into(),
+        "survey --terrain town:1 --size 24 --false-walls 0.05 --preset rangers --max-ticks 30 --out 9".into(),
     ];
     let (mut summaries, mut traces) = (Keys::new(), Keys::new());
     for (run, out) in runs.iter().zip(1..) {

@@ -39,7 +39,11 @@ pub(super) fn is_clear(walls: &BTreeSet<Voxel>, clearance: u8, voxel: Voxel) -> 
 
 /// The places that can be reached, by brute force.
 pub(super) fn reached(walls: &BTreeSet<Voxel>, start: Voxel, clearance: u8) -> Vec<Voxel> {
-    let is_pose = |voxel| is_clear(walls, clearance, voxel);
+    flood(start, |voxel| is_clear(walls, clearance, voxel))
+}
+
+/// All that steps over poses lead to.
+fn flood(start: Voxel, is_pose: impl Fn(Voxel) -> bool) -> Vec<Voxel> {
     let mut reached = Vec::from([start]);
     let mut next = 0;
     while let Some(&at) = reached.get(next) {
@@ -135,16 +139,7 @@ impl World {
                 && !blocks.contains(&voxel)
                 && voxel.beside().iter().all(|beside| !blocks.contains(beside))
         };
-        let mut reached = Vec::from([START]);
-        let mut next = 0;
-        while let Some(&at) = reached.get(next) {
-            next += 1;
-            for beside in at.beside() {
-                if is_pose(beside) && !reached.contains(&beside) {
-                    reached.push(beside);
-                }
-            }
-        }
+        let reached = flood(START, is_pose);
         let views = reached.iter().flat_map(|&eye| self.look(eye, 0));
         views.map(|(voxel, _)| voxel).collect()
     }

@@ -154,6 +154,7 @@ fn made_heights(from: &mut Bytes<'_>) -> Trace {
         scenario.limits.min_altitude = from.length(9.0);
         scenario.limits.ceiling = from.length(99.0);
         scenario.limits.separation = from.length(2.0);
+        scenario.limits.clearance = from.byte() % 5;
         scenario.conditions.loss = from.length(1.0).into();
         let death = Event::from((from.byte(), from.byte().into()));
         scenario.conditions.faults.deaths.push(death);

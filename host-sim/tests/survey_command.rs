@@ -523,7 +523,15 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
             ["--metres-per-cell", "--scene"],
         ),
         ("--sensor camera", ["--sensor camera", "among voxels"]),
-        ("--radius 0.1", ["--radius", "among voxels"]),
+        ("--radius 0.1", ["wide a column is", "--metres-per-cell"]),
+        (
+            "--metres-per-cell 0.1 --radius 0.5",
+            ["with columns of 0.1 m at most 0.30 m", "0.17 m or more"],
+        ),
+        (
+            "--clearance 3 --min-altitude 2",
+            ["--min-altitude 2: expected 3 or more", "--clearance 3"],
+        ),
         (
             "--terrain town:1 --radius 0.1",
             ["--radius", "--metres-per-cell"],

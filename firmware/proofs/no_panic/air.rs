@@ -120,6 +120,7 @@ fn limits() -> Limits {
         min_altitude: 1.0,
         ceiling: 20.0,
         separation: 1.0,
+        clearance: 2,
     })
 }
 

@@ -109,7 +109,7 @@ pub(crate) struct Survey {
     /// Longest flight in a step, 0.1 to 100 cells. Default: 2.
     #[arg(long, value_name = "A")]
     step: Option<f32>,
-    /// Least altitude over ground, in cells. Default: 2.
+    /// Least altitude over ground, in cells. Default: 2, or the --clearance if that is more.
     #[arg(long, value_name = "H")]
     min_altitude: Option<f32>,
     /// Greatest height, at most 500 cells. Default: 40.
@@ -159,8 +159,7 @@ impl Survey {
             ("fov", self.fov.is_some()),
         ];
         let given = among_voxels.iter().find(|(_, given)| *given);
-        let given = given.map(|(option, _)| *option);
-        if let Some(option) = given.or(self.body.given()) {
+        if let Some((option, _)) = given {
             return Err(format!(
                 "--{option} applies among voxels alone; leave it out, or choose --scene \
                  FILE or town:SEED"
@@ -187,7 +186,8 @@ impl Survey {
             );
         }
         let terrain = Arc::new(terrain);
-        let mut run = open(terrain.clone(), &self.scenario()?)?;
+        let scenario = self.scenario(self.body.over_heights(&terrain)?)?;
+        let mut run = open(terrain.clone(), &scenario)?;
         let mut folder = self.output.folder(terrain.name())?;
         let bar = self.output.bar(terrain.extent().cells(), "columns");
         while run.step() {
@@ -254,7 +254,7 @@ impl Survey {
         let mut scenario = voxels::Scenario::new(self.robots.into(), 0);
         scenario.planner = self.planner_for_voxels()?;
         scenario.range = self.range as u8;
-        scenario.clearance = self.body.clearance(scene)?;
+        scenario.clearance = self.body.among_voxels(scene)?;
         scenario.field = self.field(scenario.clearance);
         scenario.start = match &self.start {
             Some(start) => Some(start.voxel(scene)?),
@@ -368,9 +368,10 @@ impl Survey {
         }
     }
 
-    fn scenario(&self) -> Result<Scenario, ScenarioError> {
+    fn scenario(&self, clearance: u8) -> Result<Scenario, ScenarioError> {
         let planner = self.planner.unwrap_or(Planner::CoordinatedSurvey);
-        let mut scenario = Scenario::new(planner, self.robots.into(), 0);
+        let scenario = Scenario::new(planner, self.robots.into(), 0);
+        let mut scenario = scenario.with_clearance(clearance);
         let usual = scenario.limits;
         scenario.limits = Limits {
             range: self.range,

@@ -10,7 +10,7 @@ mod read;
 
 use std::io;
 
-use planner_core::surface::{Column, clearance};
+use planner_core::surface::{Column, Columns, body_columns, reaches_over};
 use planner_core::survey::Limits;
 use planner_core::{Cell, Extent, Point, Stop};
 use serde::{Deserialize, Serialize};
@@ -48,7 +48,7 @@ const TOLERANCE: f32 = 1e-3;
 pub struct Safety {
     /// Flights below the least altitude or above the ceiling.
     pub altitude_violations: u32,
-    /// Flights through the ground or out of the box.
+    /// Flights in which the body went through the ground or out of the box.
     pub obstacle_violations: u32,
     /// Pairs of robots too near to each other.
     pub separation_violations: u32,
@@ -64,14 +64,25 @@ impl Safety {
         from: Point,
         to: Point,
     ) {
-        let least = clearance(from, to, |cell| terrain.height(cell));
-        // Whom the wind has pushed too low may rise, and too high, sink.
+        // Whom the wind has pushed too low may rise, and too high, sink; and what it has pushed
+        // beside something low may fly from there, if it does not sink.
         let is_rise = (to.x, to.y) == (from.x, from.y) && to.z > from.z;
-        self.altitude_violations += u32::from(
-            to.z > limits.ceiling.max(from.z) + TOLERANCE
-                || !is_rise && least.is_some_and(|least| least < limits.min_altitude - TOLERANCE),
-        );
-        self.obstacle_violations += u32::from(least.is_none_or(|least| least < 0.0));
+        let was_under = |cell| to.z >= from.z && reaches_over(limits.clearance, from.cell(), cell);
+        let radius = f32::from(limits.clearance);
+        let (mut is_low, mut touches) = (false, false);
+        for crossing in Columns::new(from, to) {
+            let low = crossing.entered.min(crossing.left);
+            for cell in body_columns(limits.clearance, crossing.cell) {
+                let over = terrain.height(cell).map(|ground| low - ground.cells());
+                let may_be_low = is_rise || cell != crossing.cell && was_under(cell);
+                let least = limits.min_altitude - TOLERANCE;
+                is_low |= !may_be_low && over.is_some_and(|over| over < least);
+                touches |= over.is_none_or(|over| over < radius - TOLERANCE.min(radius));
+            }
+        }
+        let is_high = to.z > limits.ceiling.max(from.z) + TOLERANCE;
+        self.altitude_violations += u32::from(is_high || is_low);
+        self.obstacle_violations += u32::from(touches);
         self.step_violations += u32::from(from.distance(to) > limits.step + TOLERANCE);
     }
 
@@ -93,8 +104,9 @@ impl Safety {
             others.fold(f32::INFINITY, |least, b| least.min(a.distance(*b))) < limits.separation
         };
         let is_down = |at: &Point| {
-            let ground = terrain.height(at.cell());
-            ground.is_some_and(|ground| at.z <= ground.cells())
+            let ground = terrain.under(at.cell(), limits.clearance);
+            let radius = f32::from(limits.clearance);
+            ground.is_some_and(|ground| at.z <= ground.cells() + radius)
         };
         alive.iter().filter(|at| is_down(at) || is_near(at)).count() as u32
     }

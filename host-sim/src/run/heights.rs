@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use planner_core::radio::{Key, MAX_LEN, SurfaceFrame};
-use planner_core::surface::{Columns, Height, Surface, clearance};
+use planner_core::surface::{Columns, Height, Surface, body_columns, clearance, reaches_over};
 use planner_core::survey::SetupError;
 use planner_core::{Action, Cell, Extent, Motion, Point, RobotId};
 
@@ -439,7 +439,7 @@ impl<const T: usize> Simulation<T> {
     }
 
     /// The wind pushes robot `i` from where it has flown to, or hovers: along level ground and
-    /// up and down, but not off the map, nor through the ground.
+    /// up and down, but its body not off the map, nor through the ground.
     fn blow(&mut self, i: usize) {
         let conditions = &self.scenario.conditions;
         if conditions.wind.is_none() {
@@ -455,12 +455,14 @@ impl<const T: usize> Simulation<T> {
             inside(from.y + y, height),
             from.z + z,
         );
-        let ground = |cell| self.terrain.height(cell);
-        if clearance(from, at, ground).is_none_or(|least| least < 0.0) {
+        let wide = self.scenario.limits.clearance;
+        let radius = f32::from(wide);
+        let ground = |cell| self.terrain.under(cell, wide);
+        if clearance(from, at, ground).is_none_or(|least| least < radius) {
             (at.x, at.y) = (from.x, from.y);
         }
         let least = ground(at.cell()).map_or(0.0, Height::cells);
-        at.z = at.z.max(least);
+        at.z = at.z.max(least + radius);
         self.robots[i].at = at;
     }
 
@@ -472,13 +474,15 @@ impl<const T: usize> Simulation<T> {
         })
     }
 
-    /// Whether the flight enters a column that nobody can.
+    /// Whether the body enters a column that nothing can.
     fn is_closed(&self, from: Point, to: Point) -> bool {
         let faults = &self.scenario.conditions.faults;
+        let wide = self.scenario.limits.clearance;
         !faults.closures.is_empty()
             && Columns::new(from, to)
-                .skip(1)
-                .any(|crossing| faults.is_closed(crossing.cell, self.now))
+                .flat_map(|crossing| body_columns(wide, crossing.cell))
+                .filter(|&cell| !reaches_over(wide, from.cell(), cell))
+                .any(|cell| faults.is_closed(cell, self.now))
     }
 
     fn check_safety(&mut self) {

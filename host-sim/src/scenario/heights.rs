@@ -1,8 +1,9 @@
 //! Surveys of a terrain of heights.
 
 use clap::ValueEnum;
+use planner_core::surface::MAX_CLEARANCE;
 use planner_core::survey::{Limits, MAX_RANGE};
-use planner_core::{Cell, Extent, Point};
+use planner_core::{Cell, Point};
 use serde::{Deserialize, Serialize};
 
 use super::{Conditions, ScenarioError, check_share};
@@ -14,7 +15,16 @@ const STEPS: std::ops::RangeInclusive<f32> = 0.1..=100.0;
 /// Highest ceiling in cells: what frames can tell.
 const HIGHEST: f32 = 500.0;
 /// Columns between two starts, and of the first from the edge.
-const APART: usize = 2;
+const APART: u8 = 2;
+
+/// The largest radius of a body, in columns, by clearance.
+pub const ROOM: [f64; MAX_CLEARANCE as usize + 1] = [0.0, 1.0, 2.0, 3.0];
+
+/// The least clearance for a body with a radius of so many columns; `None`: none is enough.
+pub fn clearance_for(radius: f64) -> Option<u8> {
+    let fits = ROOM.iter().position(|&room| radius <= room);
+    fits.map(|clearance| clearance as u8)
+}
 
 /// Options that are of grids, too.
 const OF_GRIDS: [&str; 7] = [
@@ -86,6 +96,7 @@ impl Scenario {
             min_altitude: 2.0,
             ceiling: 40.0,
             separation: 1.0,
+            clearance: 0,
         };
         Self {
             planner,
@@ -94,6 +105,17 @@ impl Scenario {
             skip: 0.0,
             conditions: Conditions::flown(seed),
         }
+    }
+
+    /// The same with robots of this clearance, which keep as much apart and above ground as
+    /// that takes.
+    pub fn with_clearance(mut self, clearance: u8) -> Self {
+        let radius = f32::from(clearance);
+        let limits = &mut self.limits;
+        limits.clearance = clearance;
+        limits.min_altitude = limits.min_altitude.max(radius);
+        limits.separation = limits.separation.max(2.0 * radius);
+        self
     }
 
     /// Whether the scenario can be flown over some terrain.
@@ -107,6 +129,7 @@ impl Scenario {
             min_altitude,
             ceiling,
             separation,
+            clearance,
         } = self.limits;
         self.conditions.check(self.robots)?;
         self.conditions
@@ -140,16 +163,42 @@ impl Scenario {
             ceiling > min_altitude && ceiling <= HIGHEST,
             format!("above the least altitude of {min_altitude} and at most {HIGHEST} cells"),
         )?;
+        if clearance > MAX_CLEARANCE {
+            let expected = format!("0 to {MAX_CLEARANCE} columns");
+            return Err(ScenarioError::setting("clearance", clearance, expected));
+        }
+        let (radius, apart) = (f32::from(clearance), apart(clearance));
+        within(
+            "min-altitude",
+            min_altitude,
+            min_altitude >= radius,
+            format!("{radius} or more, with --clearance {clearance}, or bodies touch the ground"),
+        )?;
+        // From where robots start, over level ground, to the corner of a body a column on.
+        let corner = (min_altitude + 1.0).hypot((radius + 1.0) * std::f32::consts::SQRT_2);
+        let corner = (100.0 * corner).ceil() / 100.0;
+        within(
+            "range",
+            range,
+            clearance == 0 || range >= corner,
+            format!(
+                "{corner} cells or more, with --clearance {clearance} and --min-altitude \
+                 {min_altitude}, or the ground under bodies is not seen"
+            ),
+        )?;
         within(
             "separation",
             separation,
-            (0.0..=APART as f32).contains(&separation),
-            format!("0 to {APART} cells, as starts are {APART} apart"),
+            (2.0 * radius..=f32::from(apart)).contains(&separation),
+            format!(
+                "{} to {apart} cells, as bodies must not touch and starts are {apart} apart",
+                2.0 * radius
+            ),
         )
     }
 
-    /// Where the robots start: in the north-west corner, two cells apart, row by row of
-    /// a square, one cell above the least altitude.
+    /// Where the robots start: in the north-west corner, two cells or the columns of a body apart,
+    /// row by row of a square, one cell above the least altitude.
     ///
     /// # Errors
     /// They do not fit into the terrain, or under the ceiling, and what would; or a fault is of
@@ -157,19 +206,19 @@ impl Scenario {
     pub fn starts(&self, terrain: &Terrain) -> Result<Vec<Point>, ScenarioError> {
         let extent = terrain.extent();
         self.conditions.faults.check_cells(extent)?;
-        if !fit(self.robots, extent) {
+        let clearance = self.limits.clearance;
+        let fit = |robots| fit(robots, clearance, terrain);
+        if !fit(self.robots) {
             return Err(ScenarioError::NoRoom {
                 robots: self.robots,
                 extent,
-                most: (1..self.robots)
-                    .rfind(|&most| fit(most, extent))
-                    .unwrap_or(0),
+                most: (1..self.robots).rfind(|&most| fit(most)).unwrap_or(0),
             });
         }
         let altitude = self.limits.min_altitude + 1.0;
-        let starts: Vec<_> = places(self.robots)
+        let starts: Vec<_> = places(self.robots, clearance)
             .map(|place| {
-                let ground = terrain.height(place).unwrap_or_default();
+                let ground = terrain.under(place, clearance).unwrap_or_default();
                 Point::over(place, ground.cells() + altitude)
             })
             .collect();
@@ -187,18 +236,28 @@ impl Scenario {
 }
 
 /// The columns over which so many robots start.
-fn places(robots: usize) -> impl Iterator<Item = Cell> {
+fn places(robots: usize, clearance: u8) -> impl Iterator<Item = Cell> {
     let per_row = (robots as f64).sqrt().ceil() as usize;
-    let place = |index| (APART + APART * index) as i16;
+    let first = usize::from(APART.max(clearance));
+    let apart = usize::from(apart(clearance));
+    let place = move |index: usize| (first + apart * index) as i16;
     (0..robots).map(move |i| Cell::new(place(i % per_row), place(i / per_row)))
 }
 
-fn fit(robots: usize, extent: Extent) -> bool {
-    places(robots).all(|place| extent.contains(place))
+/// Columns from one start to the next: more than bodies keep apart, or those that start would hold
+/// each other up.
+fn apart(clearance: u8) -> u8 {
+    let width = clearance.saturating_mul(2).saturating_add(1);
+    APART.max(width)
+}
+
+fn fit(robots: usize, clearance: u8, terrain: &Terrain) -> bool {
+    places(robots, clearance).all(|place| terrain.under(place, clearance).is_some())
 }
 
 #[cfg(test)]
 mod tests {
+    use planner_core::Extent;
     use planner_core::surface::Height;
 
     use super::*;
@@ -228,6 +287,38 @@ mod tests {
                         let altitude = start.z - f32::from(ground) / 4.0;
                         assert!(altitude >= scenario.limits.min_altitude);
                     }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bodies_start_where_they_have_room_and_apart() {
+        for side in 1..40 {
+            for (robots, clearance) in [(1, 1), (1, 3), (2, 1), (4, 2), (9, 3)] {
+                let terrain = Terrain::from_fn(Extent::new(side, side), |cell| {
+                    Height((cell.x * 5 + cell.y * 3) as u8 % 16)
+                });
+                let scenario = scenario(robots).with_clearance(clearance);
+                assert_eq!(scenario.check(), Ok(()));
+                let starts = match scenario.starts(&terrain) {
+                    Ok(starts) => starts,
+                    Err(ScenarioError::NoRoom { most, .. }) => {
+                        assert!(most < robots && side < 24, "{most}");
+                        continue;
+                    }
+                    Err(error) => panic!("{error}"),
+                };
+                let radius = f32::from(clearance);
+                for (number, start) in starts.iter().enumerate() {
+                    let ground = terrain.under(start.cell(), clearance).unwrap();
+                    assert!(start.z - ground.cells() > radius);
+                    let others = starts.iter().skip(number + 1);
+                    assert!(
+                        others
+                            .into_iter()
+                            .all(|other| { other.plan_distance(*start) > 2.0 * radius })
+                    );
                 }
             }
         }
@@ -283,6 +374,29 @@ mod tests {
         bad(&|it| it.limits.range = 0.0, &["--range", "above 0"]);
         bad(&|it| it.limits.step = 0.0, &["--step"]);
         bad(&|it| it.limits.min_altitude = 8.0, &["range of 8"]);
+        bad(&|it| it.limits.clearance = 4, &["--clearance 4", "0 to 3"]);
+        let wide = scenario(2).with_clearance(3);
+        let bad_wide = |change: &dyn Fn(&mut Scenario), words: &[&str]| {
+            bad(
+                &|it| {
+                    *it = wide.clone();
+                    change(it);
+                },
+                words,
+            );
+        };
+        bad_wide(
+            &|it| it.limits.min_altitude = 2.5,
+            &["--min-altitude 2.5", "3 or more"],
+        );
+        bad_wide(
+            &|it| it.limits.separation = 5.0,
+            &["--separation 5", "6 to 7"],
+        );
+        bad_wide(
+            &|it| it.limits.range = 6.0,
+            &["--range 6", "6.93", "--clearance 3"],
+        );
         bad(&|it| it.robots = 0, &["--robots 0", "1 to 255"]);
         bad(&|it| it.robots = 256, &["--robots 256"]);
         let kill = "2@3".parse().unwrap();

@@ -35,6 +35,8 @@ pub struct Summary {
     pub range: f32,
     /// Longest flight in a step, in cells.
     pub step: f32,
+    /// Radius of the robots, in columns.
+    pub clearance: u8,
     /// Side of a column in metres, where the terrain says so.
     pub cell_size: Option<f64>,
     /// How fast robots fly, in metres a second, if that was said.
@@ -119,6 +121,7 @@ impl Summary {
             planner: scenario.planner,
             range: scenario.limits.range,
             step: scenario.limits.step,
+            clearance: scenario.limits.clearance,
             cell_size: trace.terrain.scale().map(|scale| scale.cell),
             speed: None,
             seconds: None,

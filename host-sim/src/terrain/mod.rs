@@ -9,7 +9,7 @@ mod relief;
 mod scale;
 mod source;
 
-use planner_core::surface::Height;
+use planner_core::surface::{Height, body_columns};
 use planner_core::{Cell, Extent};
 
 use crate::dice::Dice;
@@ -148,6 +148,13 @@ impl Terrain {
         self.extent.contains(cell).then(|| {
             self.heights[cell.y as usize * usize::from(self.extent.width) + cell.x as usize]
         })
+    }
+
+    /// Height of the highest ground under a body of this clearance with its middle over `cell`;
+    /// `None` where the body is not all over the terrain.
+    pub fn under(&self, cell: Cell, clearance: u8) -> Option<Height> {
+        let mut columns = body_columns(clearance, cell);
+        columns.try_fold(Height(0), |most, cell| Some(most.max(self.height(cell)?)))
     }
 
     /// Height of the highest ground.

@@ -1,19 +1,22 @@
 //! Over heights.
 
+use std::collections::HashSet;
+
 use host_sim::record::Deed;
 use host_sim::record::heights::Trace;
 use host_sim::run::heights::run;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{CellSpan, Event, Faults, MediumKind, Mission, Wind};
 use host_sim::summary::heights::Summary;
-use host_sim::terrain::{Terrain, look};
+use host_sim::terrain::Terrain;
 use planner_core::surface::Height;
-use planner_core::{Cell, Direction, Extent, Point, Reason, Stop};
+use planner_core::{Cell, Extent, Reason, Stop};
 use proptest::prelude::*;
 
 use crate::check_with_octomap;
+use crate::visible::visible;
 
-const ALL: [Planner; 8] = [
+pub(crate) const ALL: [Planner; 8] = [
     Planner::CoordinatedSurvey,
     Planner::CoordinatedCubic,
     Planner::Fcao,
@@ -24,7 +27,7 @@ const ALL: [Planner; 8] = [
     Planner::ClosestUntilReached,
 ];
 
-const OWN: [Planner; 3] = [
+pub(crate) const OWN: [Planner; 3] = [
     Planner::CoordinatedSurvey,
     Planner::CoordinatedCubic,
     Planner::Fcao,
@@ -366,59 +369,6 @@ fn a_robot_fits_into_24_kib() {
     assert!(size_of::<CoordinatedSurvey<13, 13>>() <= 24 * 1024);
 }
 
-/// Everything that can be seen from just inside the edges of columns that border unseen
-/// ones and can be flown to over seen ones, from low to high in steps, again and again
-/// until nothing is new.
-fn visible(terrain: &Terrain, scenario: &Scenario, start: Point) -> Vec<Cell> {
-    let limits = scenario.limits;
-    let mut seen: Vec<Cell> = look(terrain, start, limits.range)
-        .iter()
-        .map(|c| c.cell)
-        .collect();
-    loop {
-        let before = seen.len();
-        let mut reached = vec![start.cell()];
-        let mut next = 0;
-        while let Some(&cell) = reached.get(next) {
-            next += 1;
-            for beside in Direction::ALL.map(|direction| cell.step(direction)) {
-                if seen.contains(&beside) && !reached.contains(&beside) {
-                    reached.push(beside);
-                }
-            }
-        }
-        for cell in reached {
-            for direction in Direction::ALL {
-                let beyond = cell.step(direction);
-                if !terrain.extent().contains(beyond) || seen.contains(&beyond) {
-                    continue;
-                }
-                let (dx, dy) = direction.delta();
-                let ground = terrain.height(cell).unwrap().cells();
-                let mut z = ground + limits.min_altitude + 0.1;
-                while z <= limits.ceiling {
-                    let eye = Point::over(cell, z).offset(
-                        0.45 * f32::from(dx),
-                        0.45 * f32::from(dy),
-                        0.0,
-                    );
-                    let new = look(terrain, eye, limits.range);
-                    seen.extend(
-                        new.iter()
-                            .map(|c| c.cell)
-                            .filter(|c| !seen.contains(c))
-                            .collect::<Vec<_>>(),
-                    );
-                    z += limits.step;
-                }
-            }
-        }
-        if seen.len() == before {
-            return seen;
-        }
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
@@ -436,7 +386,7 @@ proptest! {
         let mut scenario = Scenario::new(planner, 2, seed);
         scenario.limits.ceiling = 20.0;
         let trace = run(&terrain, &scenario).unwrap();
-        let visible = visible(&terrain, &scenario, trace.starts[0]);
+        let visible = visible(&terrain, &scenario, trace.starts[0], HashSet::new());
         prop_assert!(*trace.seen.last().unwrap() as usize >= visible.len(),
             "{} of {}", trace.seen.last().unwrap(), visible.len());
         prop_assert_eq!(trace.safety, Default::default());

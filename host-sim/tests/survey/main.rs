@@ -1,6 +1,8 @@
 //! What a survey owes, over random terrains, fleets and faults.
 
+mod bodies;
 mod heights;
+mod visible;
 mod voxels;
 
 use host_sim::scene::octree::OcTree;

@@ -7,9 +7,11 @@
 //! A *frontier* is a known column with an unknown 4-neighbour inside the map
 //! [Renzaglia2019 §3]. Their number is kept per tile as columns become known.
 
+mod body;
 mod nearest;
 mod segment;
 
+pub use body::{MAX_CLEARANCE, body_columns, reaches_over};
 pub(crate) use nearest::distance_to_tile;
 pub use segment::{Columns, Crossing, clearance, in_sight};
 

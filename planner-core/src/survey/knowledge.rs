@@ -10,7 +10,7 @@ use crate::cell::{Cell, Direction, Extent, ExtentError};
 use crate::point::Point;
 use crate::radio::{FrameError, Hearsay, HeightRecord, LinkConfig, MAX_LEN, Peer, Roster};
 use crate::robot::{Action, Activity, Motion, RobotId, Status, Stop, Wait};
-use crate::surface::{Column, Height, Patch, Surface, distance_to_tile};
+use crate::surface::{Column, Height, MAX_CLEARANCE, Patch, Surface, distance_to_tile};
 use crate::tile::{TileIndex, bits};
 use crate::zeroed::Maybe;
 
@@ -34,6 +34,8 @@ pub enum SetupError {
     Range,
     /// Another limit is negative, not finite, or a step is not above 0.
     Limits,
+    /// The clearance is above [`MAX_CLEARANCE`].
+    Clearance,
 }
 
 impl fmt::Display for SetupError {
@@ -48,6 +50,7 @@ impl fmt::Display for SetupError {
                 f,
                 "step, altitudes and separation must be finite and not negative"
             ),
+            Self::Clearance => write!(f, "the clearance must be at most {MAX_CLEARANCE} columns"),
         }
     }
 }
@@ -78,6 +81,10 @@ pub struct Knowledge<const TW: usize, const TH: usize> {
     blocked: bool,
     /// Whether the last pose was one that nothing can be decided from.
     lost: bool,
+    /// Whether the body was where it must not be at the last look, and whether it ever was
+    /// where it may.
+    pub(super) astray: bool,
+    had_room: bool,
     /// Whether there was a look since the last tick.
     looked: bool,
     /// Looks in a row that showed nothing where they must show something.
@@ -111,6 +118,8 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             flight: (Point::new(0.0, 0.0, 0.0), Point::new(0.0, 0.0, 0.0)),
             blocked: false,
             lost: false,
+            astray: false,
+            had_room: false,
             looked: false,
             silent: 0,
             link: Link::vacant(),
@@ -157,6 +166,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         {
             return Err(SetupError::Limits);
         }
+        if limits.clearance > MAX_CLEARANCE {
+            return Err(SetupError::Clearance);
+        }
         self.surface.reset(extent)?;
         self.limits = limits;
         self.position = Point::new(0.0, 0.0, 0.0);
@@ -168,6 +180,8 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.idle = 0;
         self.blocked = false;
         self.lost = false;
+        self.astray = false;
+        self.had_room = false;
         self.looked = false;
         self.silent = 0;
         self.link = Link::new(link, id, extent);
@@ -349,13 +363,15 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
             return;
         }
         self.position = at;
-        self.errand.begin(at);
         self.news.begin(at);
         for &column in columns {
             if self.surface.learn(column) {
                 self.news.add(column.cell);
             }
         }
+        self.astray = self.sky().is_astray(at);
+        self.errand.begin(at, self.had_room);
+        self.had_room |= !self.astray;
         if !columns.is_empty() {
             if self.silent >= SILENCE {
                 self.stopped = false;

@@ -2,12 +2,14 @@
 //!
 //! Home is where the robot was when it first had a good pose: it ends above its start, at the
 //! same height, or, if that was below the least altitude, where it had risen to.
+//! A wide robot that does not see all ground under it there flies to where it does first, and
+//! that is home.
 //!
 //! # The way home
 //! A robot that may have to go home keeps a way there: a chain of straight parts over
 //! corners, whose last one is home. Each part is one flight, or it is open to
 //! both sides too, so that places on it may be rounded. A flight between the least altitude
-//! and the ceiling is open back, too, for a line crosses the same
+//! and the ceiling, with room for the body, is open back, too, for a line crosses the same
 //! [columns](crate::surface::Columns) both ways. After each flight either the last
 //! corner is still straight ahead, or the place that the robot comes from is a new one; then
 //! corners are left out that need not be there. So the way is known at any time, without a
@@ -115,9 +117,10 @@ impl Errand {
         self.end();
     }
 
-    /// The robot has a good pose; the first one is home.
-    pub(super) fn begin(&mut self, at: Point) {
-        if matches!(self.home, Maybe::Nothing) {
+    /// The robot has a good pose; the first one is home, or the first of those with room for
+    /// its body, if it `had_room` in none yet.
+    pub(super) fn begin(&mut self, at: Point, had_room: bool) {
+        if !had_room || matches!(self.home, Maybe::Nothing) {
             self.home = Maybe::Just(at);
             self.trail.begin(at);
         }
@@ -168,7 +171,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
     /// Where it ends: at home, but not lower than anything may fly.
     pub(super) fn home(&self) -> Option<Point> {
         let home = self.errand.home.get()?;
-        let ground = self.surface.height(home.cell()).map_or(0.0, Height::cells);
+        let ground = self.sky().highest(home, home).map_or(0.0, Height::cells);
         let least = ground + self.limits.min_altitude;
         Some(Point::new(home.x, home.y, home.z.max(least)))
     }

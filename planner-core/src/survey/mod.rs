@@ -42,6 +42,16 @@ pub struct Limits {
     pub ceiling: f32,
     /// Least distance from other robots. At least 0.
     pub separation: f32,
+    /// How wide the robots are, 0 to [`MAX_CLEARANCE`](crate::surface::MAX_CLEARANCE) columns:
+    /// their body is a ball with this radius, and all that is said of the ground under a robot
+    /// holds for every column under it. With 0 that is the one of its middle.
+    ///
+    /// So a robot flies over ground that is known as far to all sides, and never beside a tower
+    /// that it could not fly over. The body does not leave the map. It takes a least altitude
+    /// of the radius at least, or the ball may touch the ground; a range that shows what
+    /// lies under a body one column on; and a start where it has room.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub clearance: u8,
 }
 
 /// What planners fly above the least altitude, in cells: ground that rises between two
@@ -81,6 +91,7 @@ impl Limits {
         min_altitude: 0.0,
         ceiling: 0.0,
         separation: 0.0,
+        clearance: 0,
     };
 }
 

@@ -7,6 +7,10 @@
 //! deep drop shows; from there the robot climbs to the ceiling, and a tower's top
 //! shows.
 //!
+//! For a body with a clearance all of this is so in configuration space (`surface/body.rs`):
+//! for *known* read *clear*, for *unknown* beside that *doubtful*. What is hidden from all edges
+//! there is left, and named.
+//!
 //! # What refuses
 //! A flight that is refused, by glass or by a robot that nobody heard of, is first taken
 //! for a passing robot's sake, and the planner steps aside. From the third refusal on the
@@ -229,8 +233,9 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
             self.rest = self.rest.saturating_sub(1);
             return knowledge.wait(Wait::Closed);
         }
-        let is_frontier = |goal| knowledge.surface().is_frontier(goal);
-        if !self.goal.is_some_and(is_frontier) {
+        let clearance = knowledge.limits().clearance;
+        let is_edge = |goal| knowledge.surface().is_edge(goal, clearance);
+        if !self.goal.is_some_and(is_edge) {
             self.goal = None;
             self.search(knowledge);
             if self.left > 0 {
@@ -483,15 +488,14 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     /// Looks at the next few tiles for the nearest frontier that was not tried.
     fn search(&mut self, knowledge: &mut Knowledge<TW, TH>) {
         let here = knowledge.position();
+        let clearance = knowledge.limits().clearance;
         for _ in 0..SLICE.min(self.left) {
             let tile = self.cursor;
             self.cursor = knowledge.surface().tile_after(tile);
             self.left -= 1;
             knowledge.count_work(1);
-            if knowledge.surface().frontiers_in(tile) == 0 {
-                continue;
-            }
-            let open = knowledge.surface().frontier_cells(tile) & !self.tried.word(tile);
+            let edges = knowledge.surface().edges(tile, clearance);
+            let open = edges & !self.tried.word(tile);
             knowledge.count_work(open.count_ones());
             for bit in bits(open) {
                 let cell = tile.cell(bit);
@@ -553,28 +557,31 @@ fn leg_steps<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) ->
     ((2.0 * (limits.ceiling + 4.0) / limits.step) as u16).saturating_add(30)
 }
 
-/// Whether all ground on the straight way to `place` is known.
+/// Whether all ground under the body on the straight way to `place` is known.
 ///
-/// Cost: the columns crossed.
+/// Cost: for each column crossed those of a body.
 fn is_known_between<const TW: usize, const TH: usize>(
     knowledge: &Knowledge<TW, TH>,
     place: Point,
 ) -> bool {
+    let clearance = knowledge.limits().clearance;
     Columns::new(knowledge.position(), place)
-        .all(|crossing| knowledge.surface().height(crossing.cell).is_some())
+        .all(|crossing| knowledge.surface().is_clear(crossing.cell, clearance))
 }
 
-/// The first edge of `frontier`, from number `first` on, that borders an unknown
-/// column, and the place just inside it.
+/// The first edge of `frontier`, from number `first` on, that borders an unknown column, for
+/// a body a doubtful one, and the place just inside it.
 fn edge_of<const TW: usize, const TH: usize>(
     knowledge: &Knowledge<TW, TH>,
     frontier: Cell,
     first: u8,
 ) -> Option<(u8, Point)> {
+    let clearance = knowledge.limits().clearance;
+    let is_beyond = |cell| knowledge.surface().is_doubtful(cell, clearance);
     (0u8..)
         .zip(Direction::ALL)
         .skip(usize::from(first))
-        .find(|&(_, direction)| knowledge.surface().is_unknown(frontier.step(direction)))
+        .find(|&(_, direction)| is_beyond(frontier.step(direction)))
         .map(|(number, direction)| {
             let (dx, dy) = direction.delta();
             let centre = Point::over(frontier, 0.0);

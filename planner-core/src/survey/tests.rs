@@ -23,6 +23,7 @@ const LIMITS: Limits = Limits {
     min_altitude: 1.5,
     ceiling: 12.0,
     separation: 1.0,
+    clearance: 0,
 };
 const START: Point = Point::new(1.5, 1.5, 3.0);
 

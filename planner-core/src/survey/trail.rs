@@ -229,6 +229,7 @@ mod tests {
                 min_altitude: 1.0,
                 ceiling: 5.0,
                 separation: 1.0,
+                clearance: 0,
             },
             surface: &surface,
         };
@@ -278,6 +279,7 @@ mod tests {
             min_altitude: 1.0,
             ceiling: 5.0,
             separation: 1.0,
+            clearance: 0,
         };
         let sky = Sky {
             limits,

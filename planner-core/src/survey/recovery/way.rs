@@ -1,4 +1,4 @@
-//! The shortest way over known columns, found in slices.
+//! The shortest way over known columns, for a body clear ones, found in slices.
 
 use crate::cell::{Cell, Direction};
 use crate::surface::Surface;
@@ -17,6 +17,30 @@ pub(super) enum Next {
     Searching,
     /// There is no way.
     None,
+}
+
+/// Where a body may fly.
+#[derive(Clone, Copy)]
+struct Room {
+    clearance: u8,
+    /// Where the robot is, if its body has no room there: from there it flies over known columns.
+    astray: Option<Cell>,
+}
+
+impl Room {
+    fn of<const TW: usize, const TH: usize>(knowledge: &Knowledge<TW, TH>) -> Self {
+        let (here, clearance) = (knowledge.position().cell(), knowledge.limits().clearance);
+        Self {
+            clearance,
+            astray: knowledge.astray.then_some(here),
+        }
+    }
+
+    /// The columns of a tile that a robot which is astray is near.
+    fn about(self, tile: TileIndex) -> u64 {
+        let near = |here| tile.near(here, self.clearance);
+        self.astray.map_or(0, near)
+    }
 }
 
 /// A wave from a goal over known columns, until it reaches the robot's. A column's
@@ -86,6 +110,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
         closed: &Tiles<u64, TW, TH>,
     ) -> Next {
         let here = knowledge.position().cell();
+        let room = Room::of(knowledge);
         for _ in 0..SLICE {
             if self.distance(here).is_some() {
                 break;
@@ -93,7 +118,7 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
             if self.is_done {
                 return Next::None;
             }
-            self.spread_into_tile(knowledge.surface(), closed);
+            self.spread_into_tile(knowledge.surface(), closed, room);
             knowledge.count_work(1);
         }
         let Some(distance) = self.distance(here) else {
@@ -112,7 +137,12 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
     }
 
     /// Lets the wave into the next tile.
-    fn spread_into_tile(&mut self, surface: &Surface<TW, TH>, closed: &Tiles<u64, TW, TH>) {
+    fn spread_into_tile(
+        &mut self,
+        surface: &Surface<TW, TH>,
+        closed: &Tiles<u64, TW, TH>,
+        room: Room,
+    ) {
         let tile = self.cursor;
         let before = (self.layer + 2) % 3;
         let reached = self
@@ -121,6 +151,10 @@ impl<const TW: usize, const TH: usize> Way<TW, TH> {
             .fold(0, |reached, layer| reached | layer.word(tile));
         let from = |tile| self.layers.get(before).map_or(0, |layer| layer.word(tile));
         let new = neighbours(tile, from) & surface.known(tile) & !reached;
+        let new = match room.clearance > 0 && new != 0 {
+            true => new & (surface.clear(tile, room.clearance) | room.about(tile)),
+            false => new,
+        };
         let shut = new & closed.word(tile);
         self.is_cut |= shut != 0;
         let new = new & !shut;

@@ -105,7 +105,8 @@ fn heights<E>(read: Result<Trace, E>) {
 fn voxels<E>(read: Result<VoxelTrace, E>) {
     let Ok(trace) = read else { return };
     assert!(trace.seen.iter().all(|&seen| seen <= trace.visible));
-    let _ = draw::oblique_voxels(&trace, trace.seen.len() as u32);
+    let ticks = trace.seen.len() as u32;
+    let _ = draw::oblique_voxels(&trace, ticks, draw::usual_cut(&trace));
     let mut file = Vec::new();
     trace.write(&mut file).unwrap();
     let again = VoxelTrace::read(&file[..]).ok().expect("it is read again");

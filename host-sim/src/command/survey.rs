@@ -9,7 +9,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use clap::Args;
-use host_sim::draw::{Coverage, animate, oblique_view, oblique_voxels, top_view, write_png};
+use host_sim::draw::{self, Coverage, animate, oblique_voxels, top_view, usual_cut};
 use host_sim::export;
 use host_sim::run::heights::open;
 use host_sim::run::voxels::Simulation;
@@ -68,6 +68,11 @@ pub(crate) struct Survey {
     /// voxels in a town, metres with --metres-per-cell. Default: in the largest room, low over known ground, as far to the north-west as one can.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     start: Option<Start>,
+    /// Height at which pictures among voxels are cut, so that rooms are seen, as the Z of --start.
+    /// Default: where most is free under a ceiling; the view from aside is cut only if the robots
+    /// start under one.
+    #[arg(long, value_name = "Z", allow_negative_numbers = true)]
+    cut: Option<f64>,
     /// Side of a column of a drawn --terrain, a town or a picture in metres: what is counted in
     /// cells is counted in metres, too. Other files say it themselves.
     #[arg(long, value_name = "M", conflicts_with = "scene", allow_negative_numbers = true, value_parser = metres)]
@@ -154,6 +159,7 @@ impl Survey {
         }
         let among_voxels = [
             ("start", self.start.is_some()),
+            ("cut", self.cut.is_some()),
             ("sensor camera", self.sensor == Some(Sensor::Camera)),
             ("sensor lidar", self.sensor == Some(Sensor::Lidar)),
             ("fov", self.fov.is_some()),
@@ -200,12 +206,8 @@ impl Survey {
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
-        folder.write("explored.png", |file| {
-            write_png(&top_view(&trace, all), file)
-        })?;
-        folder.write("oblique.png", |file| {
-            write_png(&oblique_view(&trace, all), file)
-        })?;
+        folder.write("explored.png", |file| draw::top_sheet(&trace, file))?;
+        folder.write("oblique.png", |file| draw::oblique_sheet(&trace, file))?;
         folder.write("explored.gif", |file| {
             let steps = trace.seen.len() as u32;
             animate(steps, |step| top_view(&trace, step), file)
@@ -263,6 +265,7 @@ impl Survey {
             None => None,
         };
         self.set(&mut scenario.conditions)?;
+        let cut = self.cut.map(|z| level(scene, z)).transpose()?;
         let run = Simulation::new(scene, &scenario);
         let mut run = run.map_err(|error| match (error, &self.start) {
             (ScenarioError::NoRoomAt { body, nearest, .. }, Some(start)) => {
@@ -287,12 +290,14 @@ impl Survey {
         let all = u32::MAX;
         folder.write("trace.csv", |file| Ok(trace.write(file)?))?;
         folder.write("summary.json", |file| Ok(writeln!(file, "{json}")?))?;
+        folder.write("explored.png", |file| draw::plan_sheet(&trace, cut, file))?;
+        let cut = cut.or(usual_cut(&trace));
         folder.write("oblique.png", |file| {
-            write_png(&oblique_voxels(&trace, all - 1), file)
+            draw::oblique_voxels_sheet(&trace, cut, file)
         })?;
         folder.write("explored.gif", |file| {
             let ticks = trace.seen.len() as u32;
-            animate(ticks, |tick| oblique_voxels(&trace, tick), file)
+            animate(ticks, |tick| oblique_voxels(&trace, tick, cut), file)
         })?;
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
@@ -432,6 +437,22 @@ impl Start {
             )
         })
     }
+}
+
+/// The level at this height.
+///
+/// # Errors
+/// None is, and how high the scene is.
+fn level(scene: &Scene, z: f64) -> Result<i16, String> {
+    let frame = scene.frame().unwrap_or(Frame::PLAIN);
+    let [x, y, lowest] = frame.middle(Voxel::new(0, 0, 0));
+    let voxel = frame.voxel([x, y, z]);
+    let voxel = voxel.filter(|voxel| scene.content(*voxel).is_some());
+    voxel.map(|voxel| voxel.z).ok_or_else(|| {
+        let bottom = lowest - 0.5 * frame.voxel_size;
+        let top = bottom + f64::from(scene.levels()) * frame.voxel_size;
+        format!("--cut {z}: lies outside of the scene, which reaches from {bottom:.2} to {top:.2}")
+    })
 }
 
 /// A number of metres.

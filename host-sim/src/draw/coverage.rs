@@ -6,6 +6,7 @@ use super::DrawError;
 use super::chart::{Axis, Chart, Panel, Point, Series, Style};
 use super::picture::title;
 use super::replay::Replay;
+use super::sheet;
 use crate::record::grid::Trace;
 use crate::record::heights;
 use crate::record::voxels::VoxelTrace;
@@ -85,9 +86,8 @@ impl From<&Trace> for Coverage {
 
 impl From<&heights::Trace> for Coverage {
     fn from(trace: &heights::Trace) -> Self {
-        let (name, planner) = (trace.terrain.name(), trace.scenario.planner);
         Self {
-            title: format!("{name}: {} robots, {planner}", trace.robots),
+            title: sheet::title(trace),
             unit: "columns",
             all: trace.extent.cells(),
             seen: trace.seen.clone(),
@@ -97,9 +97,8 @@ impl From<&heights::Trace> for Coverage {
 
 impl From<&VoxelTrace> for Coverage {
     fn from(trace: &VoxelTrace) -> Self {
-        let name = trace.scene.name();
         Self {
-            title: format!("{name}: {} robots, voxel-survey", trace.ways.len()),
+            title: sheet::voxel_title(trace),
             unit: "visible voxels",
             all: trace.visible,
             seen: trace.seen.clone(),

@@ -14,14 +14,14 @@ const TEXT: u32 = 15;
 
 pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
-/// Writes lines from the height `y` on, and tells where the next one would stand.
+/// Writes lines from a place downwards, and tells how high the next one would stand.
 pub(super) fn write_lines(
     area: &Area<'_>,
-    y: i32,
+    (x, y): (i32, i32),
     lines: &[impl AsRef<str>],
 ) -> Result<i32, DrawError> {
     lines.iter().try_fold(y, |y, line| {
-        write(area, (MARGIN, y), line.as_ref())?;
+        write(area, (x, y), line.as_ref())?;
         Ok(y + LINE)
     })
 }
@@ -110,4 +110,37 @@ pub(super) fn dash(
 ) -> Result<(), DrawError> {
     let line = [(x, middle), (x + 14, middle)];
     Ok(area.draw(&PathElement::new(line, color.stroke_width(3)))?)
+}
+
+/// Where a robot started.
+pub(super) fn start(
+    area: &Area<'_>,
+    at: (i32, i32),
+    radius: i32,
+    color: RGBColor,
+) -> Result<(), DrawError> {
+    area.draw(&Circle::new(at, radius, WHITE.filled()))?;
+    Ok(area.draw(&Circle::new(at, radius, color.stroke_width(2)))?)
+}
+
+/// Where it ended.
+pub(super) fn end(
+    area: &Area<'_>,
+    at: (i32, i32),
+    radius: i32,
+    color: RGBColor,
+) -> Result<(), DrawError> {
+    area.draw(&Circle::new(at, radius + 1, WHITE.filled()))?;
+    Ok(area.draw(&Circle::new(at, radius, color.filled()))?)
+}
+
+/// The robots by their colours, which come again after `colors`: their numbers, and the first of
+/// them.
+pub(super) fn robots(robots: usize, colors: usize) -> impl Iterator<Item = (String, usize)> {
+    let more = if robots > 4 * colors { ", …" } else { "" };
+    (0..robots.min(colors)).map(move |robot| {
+        let same = (robot..robots).step_by(colors).take(4);
+        let same: Vec<String> = same.map(|robot| robot.to_string()).collect();
+        (format!("robot {}{more}", same.join(", ")), robot)
+    })
 }

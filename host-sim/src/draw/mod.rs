@@ -5,6 +5,7 @@
 mod animation;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod chart;
+mod compass;
 #[cfg(not(target_arch = "wasm32"))]
 mod coverage;
 #[cfg(not(target_arch = "wasm32"))]
@@ -13,11 +14,15 @@ mod oblique;
 mod paint;
 #[cfg(not(target_arch = "wasm32"))]
 mod picture;
+#[cfg(not(target_arch = "wasm32"))]
+mod plan;
 #[cfg(all(feature = "mcap", not(target_arch = "wasm32")))]
 mod recording;
 mod replay;
 #[cfg(not(target_arch = "wasm32"))]
 mod scans;
+#[cfg(not(target_arch = "wasm32"))]
+mod sheet;
 mod top;
 
 use std::io;
@@ -29,7 +34,7 @@ use thiserror::Error;
 pub use animation::{animate, animation};
 #[cfg(not(target_arch = "wasm32"))]
 pub use coverage::Coverage;
-pub use oblique::{oblique_view, oblique_voxels};
+pub use oblique::{oblique_view, oblique_voxels, usual_cut};
 #[cfg(not(target_arch = "wasm32"))]
 pub use picture::picture;
 #[cfg(all(feature = "mcap", not(target_arch = "wasm32")))]
@@ -37,6 +42,8 @@ pub use recording::recording;
 pub use replay::Replay;
 #[cfg(not(target_arch = "wasm32"))]
 pub use scans::scans;
+#[cfg(not(target_arch = "wasm32"))]
+pub use sheet::{oblique_sheet, oblique_voxels_sheet, plan_sheet, top_sheet};
 pub use top::top_view;
 
 /// A picture that cannot be made.

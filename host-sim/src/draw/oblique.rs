@@ -4,6 +4,7 @@ use image::{Rgb, RgbImage};
 use planner_core::volume::Voxel;
 use planner_core::{Cell, Extent, Point};
 
+use super::compass::{Drawn, Rows, Sides, ways_among_voxels, ways_over_heights};
 use super::paint::{DARK, disc, line, put, shade, way_color};
 use crate::record::heights::Trace;
 use crate::record::voxels::VoxelTrace;
@@ -28,38 +29,114 @@ impl View {
             self.origin.1 + (at.x + at.y) * self.scale * 0.5 - at.z * self.scale,
         )
     }
+
+    /// What a cell's sides take.
+    fn sides(self) -> Sides {
+        let scale = self.scale;
+        Sides {
+            east: (scale, scale * 0.5),
+            north: (scale, -scale * 0.5),
+            up: Some((0.0, -scale)),
+        }
+    }
 }
 
 /// What had been mapped after `step` steps, with the ways flown; what is unknown is
 /// left dark.
 pub fn oblique_view(trace: &Trace, step: u32) -> RgbImage {
+    heights(trace, step).image
+}
+
+pub(super) fn heights(trace: &Trace, step: u32) -> Drawn {
+    let rows = Rows::of_heights(trace);
     let blocks = trace.mapped(step).map(|column| Block {
-        cell: column.cell,
+        cell: rows.cell(column.cell),
         bottom: 0.0,
         top: column.height.cells(),
     });
-    let ways: Vec<_> = (0..trace.robots)
-        .map(|robot| trace.way(robot, step))
-        .collect();
     let highest = trace.terrain.highest().cells();
-    oblique(trace.extent, highest, blocks.collect(), &ways)
+    let place = Place {
+        extent: trace.extent,
+        lowest: 0.0,
+        highest,
+        ceiling: highest + 8.0,
+    };
+    oblique(&place, blocks.collect(), &ways_over_heights(trace, step))
 }
 
-/// What the robots took for occupied in a scene of voxels after `tick` steps, with the ways flown.
-pub fn oblique_voxels(trace: &VoxelTrace, tick: u32) -> RgbImage {
+/// What the robots took for occupied in a scene of voxels after `tick` steps, with the ways flown;
+/// without what is higher than the level `cut`, if there is one.
+pub fn oblique_voxels(trace: &VoxelTrace, tick: u32, cut: Option<i16>) -> RgbImage {
+    voxels(trace, tick, cut).image
+}
+
+pub(super) fn voxels(trace: &VoxelTrace, tick: u32, cut: Option<i16>) -> Drawn {
+    let (scene, rows) = (&trace.scene, Rows::of_voxels(trace.scene.extent()));
+    let levels = i16::from(scene.levels());
+    let shown = cut.map_or(levels, |cut| levels.min(cut.saturating_add(1)));
     let occupied = trace.map(tick).into_iter().filter(|found| found.1);
-    let blocks = occupied.map(|(voxel, _)| Block {
-        cell: voxel.cell(),
+    let shown_blocks = occupied.filter(|(voxel, _)| voxel.z < shown);
+    let blocks = shown_blocks.map(|(voxel, _)| Block {
+        cell: rows.cell(voxel.cell()),
         bottom: f32::from(voxel.z),
         top: f32::from(voxel.z) + 1.0,
     });
-    let point = |voxel: &Voxel| Point::over(voxel.cell(), f32::from(voxel.z) + 0.5);
-    let ways = trace.ways.iter();
-    let ways: Vec<Vec<Point>> = ways
-        .map(|way| way.iter().take(tick as usize + 1).map(point).collect())
+    let solid = trace.found.iter().filter(|found| found.2);
+    let flown = trace.ways.iter().flatten().map(|at| at.z + 1);
+    let place = Place {
+        extent: scene.extent(),
+        lowest: f32::from(solid.map(|found| found.1.z).min().unwrap_or(0)),
+        highest: f32::from(shown),
+        ceiling: f32::from(flown.max().unwrap_or(0).max(shown)),
+    };
+    oblique(&place, blocks.collect(), &ways_among_voxels(trace, tick))
+}
+
+/// The level at which a view from aside is cut unless somebody chose one: none if the first start is
+/// under the sky, or else [`rooms`], which a ceiling would hide.
+pub fn usual_cut(trace: &VoxelTrace) -> Option<i16> {
+    let start = trace.start()?;
+    let above = start.z.saturating_add(1)..i16::from(trace.scene.levels());
+    let mut above = above.map(|z| Voxel { z, ..start });
+    let is_covered = above.any(|voxel| trace.scene.is_occupied(voxel));
+    rooms(trace).filter(|_| is_covered)
+}
+
+/// The level that shows rooms best: where the robots' map has most free voxels with something over
+/// them, or the middle one of those that have nine tenths of that; `None` if nothing is over any.
+pub(super) fn rooms(trace: &VoxelTrace) -> Option<i16> {
+    let width = usize::from(trace.scene.extent().width);
+    let index = |at: &Voxel| at.y as usize * width + at.x as usize;
+    let map = trace.map(u32::MAX);
+    let mut tops = vec![-1; trace.scene.extent().cells() as usize];
+    for (voxel, _) in map.iter().filter(|found| found.1) {
+        let top = &mut tops[index(voxel)];
+        *top = voxel.z.max(*top);
+    }
+    let mut covered = vec![0_u64; trace.scene.levels().into()];
+    for (voxel, _) in map
+        .iter()
+        .filter(|(at, full)| !full && at.z < tops[index(at)])
+    {
+        covered[voxel.z as usize] += 1;
+    }
+    let most = *covered.iter().max().filter(|&&most| most > 0)?;
+    let levels = covered.iter().zip(0..);
+    let good: Vec<i16> = levels
+        .filter(|(free, _)| 10 * **free >= 9 * most)
+        .map(|(_, level)| level)
         .collect();
-    let highest = f32::from(trace.scene.levels());
-    oblique(trace.scene.extent(), highest, blocks.collect(), &ways)
+    good.get(good.len() / 2).copied()
+}
+
+/// The box that is drawn, in cells.
+struct Place {
+    extent: Extent,
+    /// Between what heights blocks have shades.
+    lowest: f32,
+    highest: f32,
+    /// How high there is anything to be drawn.
+    ceiling: f32,
 }
 
 /// Something solid over one column of cells.
@@ -69,11 +146,14 @@ struct Block {
     top: f32,
 }
 
-/// Blocks and ways in a box whose blocks reach up to `highest`.
-fn oblique(extent: Extent, highest: f32, mut blocks: Vec<Block>, ways: &[Vec<Point>]) -> RgbImage {
-    let (width, height) = (f32::from(extent.width), f32::from(extent.height));
+/// Blocks and ways, rows leading south.
+fn oblique(place: &Place, mut blocks: Vec<Block>, ways: &[Vec<Point>]) -> Drawn {
+    let (width, height) = (
+        f32::from(place.extent.width),
+        f32::from(place.extent.height),
+    );
     let margin = 20.0;
-    let top = highest + 8.0;
+    let top = place.ceiling;
     let scale = (WIDTH / (width + height)).clamp(2.0, 12.0).floor();
     let view = View {
         scale,
@@ -90,7 +170,8 @@ fn oblique(extent: Extent, highest: f32, mut blocks: Vec<Block>, ways: &[Vec<Poi
         depth(a).cmp(&depth(b)).then(a.bottom.total_cmp(&b.bottom))
     });
     for solid in &blocks {
-        block(&mut picture, solid, highest, view);
+        let (above, most) = (solid.top - place.lowest, place.highest - place.lowest);
+        block(&mut picture, solid, shade(above, most), view);
     }
     for (robot, way) in ways.iter().enumerate() {
         let colour = way_color(robot);
@@ -98,17 +179,20 @@ fn oblique(extent: Extent, highest: f32, mut blocks: Vec<Block>, ways: &[Vec<Poi
             let (from, to) = (view.project(leg[0]), view.project(leg[1]));
             line(&mut picture, from, to, &[(0.0, 0.0), (0.0, 1.0)], colour);
         }
-        if let Some(last) = way.last() {
+        if let (Some(first), Some(last)) = (way.first(), way.last()) {
+            disc(&mut picture, view.project(*first), 3.0..=4.0, colour);
             disc(&mut picture, view.project(*last), 0.0..=4.0, colour);
         }
     }
-    picture
+    Drawn {
+        image: picture,
+        sides: view.sides(),
+    }
 }
 
 /// One block: its top, and its two sides that face the viewer.
-fn block(picture: &mut RgbImage, block: &Block, highest: f32, view: View) {
+fn block(picture: &mut RgbImage, block: &Block, colour: Rgb<u8>, view: View) {
     let scale = view.scale;
-    let colour = shade(block.top, highest);
     let darker = |share: f32| Rgb(colour.0.map(|value| (f32::from(value) * share) as u8));
     let (x, y) = view.project(Point::over(block.cell, block.top));
     let wide = scale as i32;
@@ -122,5 +206,49 @@ fn block(picture: &mut RgbImage, block: &Block, highest: f32, view: View) {
         for dy in half + 1..=half + deep {
             put(picture, x + dx as f32, y + dy as f32, side);
         }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::run::voxels::Simulation;
+    use crate::scenario::voxels::Scenario;
+    use crate::scene::Scene;
+
+    /// What a robot maps that starts at `start` in a yard with a house, which has a door to the
+    /// south: its walls reach from 4 to 10, its roof is at level 6.
+    pub(in crate::draw) fn house(start: Voxel) -> VoxelTrace {
+        let is_house = |at: Voxel| {
+            let inside = |side: i16| (4..=10).contains(&side);
+            let wall = |side: i16| [4, 10].contains(&side);
+            let door = at.y == 4 && (6..=8).contains(&at.x) && at.z < 4;
+            let shell = at.z == 6 || (wall(at.x) || wall(at.y)) && !door;
+            inside(at.x) && inside(at.y) && at.z <= 6 && shell
+        };
+        let scene = Scene::from_fn("house", Extent::new(15, 16), 9, |at| {
+            at.z == 0 || is_house(at)
+        });
+        let mut scenario = Scenario::new(1, 0);
+        scenario.start = Some(start);
+        let mut run = Simulation::new(&scene, &scenario).unwrap();
+        while run.step() {}
+        run.finish()
+    }
+
+    #[test]
+    fn a_ceiling_over_the_start_is_cut_off_and_a_roof_is_not() {
+        let (indoors, outdoors) = (Voxel::new(7, 7, 2), Voxel::new(2, 2, 2));
+        let trace = house(indoors);
+        assert!(trace.complete());
+        assert_eq!((rooms(&trace), usual_cut(&trace)), (Some(2), Some(2)));
+        let trace = house(outdoors);
+        assert_eq!((rooms(&trace), usual_cut(&trace)), (Some(2), None));
+        let roof = |picture: &RgbImage| {
+            let roof = shade(7.0, 9.0);
+            picture.pixels().filter(|it| **it == roof).count()
+        };
+        assert!(roof(&oblique_voxels(&trace, u32::MAX, None)) > 100);
+        assert_eq!(roof(&oblique_voxels(&trace, u32::MAX, Some(3))), 0);
     }
 }

@@ -105,18 +105,23 @@ pub(super) const ROBOT_COLORS: usize = ROBOTS.len();
 
 /// The same on dark ground, with the yellow and without the black.
 pub(super) fn way_color(robot: usize) -> Rgb<u8> {
-    const WAYS: [Rgb<u8>; 8] = [
-        Rgb([230, 159, 0]),
-        Rgb([86, 180, 233]),
-        Rgb([0, 158, 115]),
-        Rgb([240, 228, 66]),
-        Rgb([0, 114, 178]),
-        Rgb([213, 94, 0]),
-        Rgb([204, 121, 167]),
-        Rgb([120, 120, 120]),
-    ];
     WAYS[robot % WAYS.len()]
 }
+
+/// Robots with a way of their own colour.
+#[cfg(not(target_arch = "wasm32"))]
+pub(super) const WAY_COLORS: usize = WAYS.len();
+
+const WAYS: [Rgb<u8>; 8] = [
+    Rgb([230, 159, 0]),
+    Rgb([86, 180, 233]),
+    Rgb([0, 158, 115]),
+    Rgb([240, 228, 66]),
+    Rgb([0, 114, 178]),
+    Rgb([213, 94, 0]),
+    Rgb([204, 121, 167]),
+    Rgb([120, 120, 120]),
+];
 
 /// What nobody has seen, in views of heights and voxels.
 pub(super) const DARK: Rgb<u8> = Rgb([24, 26, 30]);
@@ -131,6 +136,15 @@ pub(super) fn shade(ground: f32, highest: f32) -> Rgb<u8> {
 pub(super) fn put(picture: &mut RgbImage, x: f32, y: f32, color: Rgb<u8>) {
     if x >= 0.0 && y >= 0.0 && (x as u32) < picture.width() && (y as u32) < picture.height() {
         picture.put_pixel(x as u32, y as u32, color);
+    }
+}
+
+/// Sets the pixels of a square with this upper left corner.
+pub(super) fn square(picture: &mut RgbImage, (x, y): (f32, f32), side: u32, color: Rgb<u8>) {
+    for dy in 0..side {
+        for dx in 0..side {
+            put(picture, x + dx as f32, y + dy as f32, color);
+        }
     }
 }
 

@@ -46,7 +46,7 @@ pub fn picture(trace: &Trace, to: impl io::Write) -> Result<(), DrawError> {
         frame.draw_ground(&area, &replay)?;
         frame.draw_ways(&area, trace)?;
         frame.draw_robots(&area, trace, &replay)?;
-        let y = write_lines(&area, frame.bottom() + MARGIN, &lines)?;
+        let y = write_lines(&area, (MARGIN, frame.bottom() + MARGIN), &lines)?;
         legend.draw(&area, y, Sign::draw)?;
         area.present()?;
     }
@@ -182,31 +182,11 @@ impl Frame {
             .zip(replay.positions())
             .enumerate()
         {
-            draw_start(area, self.lane(robot, start), radius, robot_color(robot))?;
-            draw_end(area, self.lane(robot, end), radius, robot_color(robot))?;
+            legend::start(area, self.lane(robot, start), radius, robot_color(robot))?;
+            legend::end(area, self.lane(robot, end), radius, robot_color(robot))?;
         }
         Ok(())
     }
-}
-
-fn draw_start(
-    area: &Area<'_>,
-    at: (i32, i32),
-    radius: i32,
-    color: RGBColor,
-) -> Result<(), DrawError> {
-    area.draw(&Circle::new(at, radius, WHITE.filled()))?;
-    Ok(area.draw(&Circle::new(at, radius, color.stroke_width(2)))?)
-}
-
-fn draw_end(
-    area: &Area<'_>,
-    at: (i32, i32),
-    radius: i32,
-    color: RGBColor,
-) -> Result<(), DrawError> {
-    area.draw(&Circle::new(at, radius + 1, WHITE.filled()))?;
-    Ok(area.draw(&Circle::new(at, radius, color.filled()))?)
 }
 
 /// The scenario in a line.
@@ -266,8 +246,8 @@ impl Sign {
     fn draw(&self, area: &Area<'_>, (x, middle): (i32, i32)) -> Result<(), DrawError> {
         match *self {
             Self::Ground(ground) => legend::square(area, (x, middle), ground.color()),
-            Self::Start => draw_start(area, (x + 7, middle), 5, INK),
-            Self::End => draw_end(area, (x + 7, middle), 5, INK),
+            Self::Start => legend::start(area, (x + 7, middle), 5, INK),
+            Self::End => legend::end(area, (x + 7, middle), 5, INK),
             Self::Robot(robot) => legend::dash(area, (x, middle), robot_color(robot)),
         }
     }
@@ -283,21 +263,8 @@ fn legend(trace: &Trace, replay: &Replay<'_>, width: u32) -> Legend<Sign> {
     entries.push(("start".into(), Sign::Start));
     entries.push(("end".into(), Sign::End));
     let robots = trace.scenario.starts.len();
-    for robot in 0..robots.min(ROBOT_COLORS) {
-        let same: Vec<String> = (robot..robots)
-            .step_by(ROBOT_COLORS)
-            .take(4)
-            .map(|robot| robot.to_string())
-            .collect();
-        let more = if robots > 4 * ROBOT_COLORS {
-            ", …"
-        } else {
-            ""
-        };
-        entries.push((
-            format!("robot {}{more}", same.join(", ")),
-            Sign::Robot(robot),
-        ));
-    }
+    entries.extend(
+        legend::robots(robots, ROBOT_COLORS).map(|(numbers, robot)| (numbers, Sign::Robot(robot))),
+    );
     Legend::of(entries, width)
 }

@@ -7,7 +7,7 @@ use planner_core::{Cell, Extent};
 use plotters::prelude::*;
 
 use super::legend::{self, Area, LINE, Legend, MARGIN, write_lines};
-use super::paint::{Ground, disc, line, put, rgb};
+use super::paint::{Ground, disc, line, rgb, square};
 use super::{DrawError, write_png};
 use crate::scans::{Belief, Replayed, Score, Verdict};
 use crate::world::cells;
@@ -146,7 +146,7 @@ pub fn scans(replayed: &Replayed, score: &Score, to: impl io::Write) -> Result<(
             let at = (corner.0 as i32, corner.1 as i32 - LINE + 2);
             legend::write(&area, at, title)?;
         }
-        let y = write_lines(&area, bottom + MARGIN, &lines)?;
+        let y = write_lines(&area, (MARGIN, bottom + MARGIN), &lines)?;
         legend.draw(&area, y, Sign::draw)?;
         area.present()?;
     }
@@ -205,16 +205,7 @@ fn draw_map(
             f32::from(at.x) * scale as f32,
             f32::from(at.y) * scale as f32,
         );
-        for dy in 0..scale {
-            for dx in 0..scale {
-                put(
-                    picture,
-                    corner.0 + x + dx as f32,
-                    corner.1 + y + dy as f32,
-                    color,
-                );
-            }
-        }
+        square(picture, (corner.0 + x, corner.1 + y), scale, color);
     }
     let pixel = |(x, y): (f64, f64)| {
         let scale = f64::from(scale);

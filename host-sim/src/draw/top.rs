@@ -3,17 +3,22 @@
 use image::RgbImage;
 use planner_core::Point;
 
-use super::paint::{DARK, disc, line, shade, way_color};
+use super::compass::{Drawn, Rows, Sides, ways_over_heights};
+use super::paint::{DARK, disc, line, shade, square, way_color};
 use crate::record::heights::Trace;
 
 /// Pixels of a cell's side.
 const SCALE: u32 = 6;
 
 /// What had been mapped after `step` steps, light where it is high, with the way of each robot flown
-/// until then, a ring where it started and a disc where it is.
+/// until then, a ring where it started and a disc where it is. North is above.
 pub fn top_view(trace: &Trace, step: u32) -> RgbImage {
+    top(trace, step).image
+}
+
+pub(super) fn top(trace: &Trace, step: u32) -> Drawn {
     let terrain = &trace.terrain;
-    let extent = terrain.extent();
+    let (extent, rows) = (terrain.extent(), Rows::of_heights(trace));
     let mut picture = RgbImage::from_pixel(
         u32::from(extent.width) * SCALE,
         u32::from(extent.height) * SCALE,
@@ -22,16 +27,11 @@ pub fn top_view(trace: &Trace, step: u32) -> RgbImage {
     let highest = terrain.highest().cells();
     for column in trace.mapped(step) {
         let colour = shade(column.height.cells(), highest);
-        for dy in 0..SCALE {
-            for dx in 0..SCALE {
-                let x = column.cell.x as u32 * SCALE + dx;
-                picture.put_pixel(x, column.cell.y as u32 * SCALE + dy, colour);
-            }
-        }
+        let corner = rows.corner(column.cell, SCALE);
+        square(&mut picture, corner, SCALE, colour);
     }
-    for robot in 0..trace.robots {
+    for (robot, way) in ways_over_heights(trace, step).iter().enumerate() {
         let colour = way_color(robot);
-        let way = trace.way(robot, step);
         for leg in way.windows(2) {
             let pen = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)];
             line(&mut picture, pixel(leg[0]), pixel(leg[1]), &pen, colour);
@@ -41,7 +41,10 @@ pub fn top_view(trace: &Trace, step: u32) -> RgbImage {
             disc(&mut picture, pixel(*last), 0.0..=5.0, colour);
         }
     }
-    picture
+    Drawn {
+        image: picture,
+        sides: Sides::from_above(SCALE),
+    }
 }
 
 fn pixel(at: Point) -> (f32, f32) {

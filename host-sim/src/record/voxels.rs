@@ -63,6 +63,11 @@ pub struct Wrong {
 }
 
 impl VoxelTrace {
+    /// Where the first robot started.
+    pub fn start(&self) -> Option<Voxel> {
+        self.ways.first().and_then(|way| way.first()).copied()
+    }
+
     /// Steps until `share` of all that there is to see had been seen.
     pub fn ticks_to(&self, share: f64) -> Option<u32> {
         let wanted = (share * f64::from(self.visible)).ceil() as u32;

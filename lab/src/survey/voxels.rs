@@ -1,7 +1,7 @@
 //! Towns of voxels: streets, rooms, bridges, cube by cube.
 
 use egui::Shape;
-use host_sim::draw::{animate, oblique_voxels};
+use host_sim::draw::{animate, oblique_voxels, usual_cut};
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::voxels::Simulation;
 use host_sim::scene::Scene;
@@ -226,14 +226,14 @@ impl Flight for Voxels {
     }
 
     fn picture(&self, steps: u32) -> RgbImage {
-        oblique_voxels(self.trace(), steps)
+        oblique_voxels(self.trace(), steps, usual_cut(self.trace()))
     }
 
     fn animation(&self) -> Result<Vec<u8>, String> {
         let trace = self.trace();
         let steps = trace.seen.len() as u32;
-        let mut gif = Vec::new();
-        animate(steps, |step| oblique_voxels(trace, step), &mut gif)
+        let (mut gif, cut) = (Vec::new(), usual_cut(trace));
+        animate(steps, |step| oblique_voxels(trace, step, cut), &mut gif)
             .map_err(|error| error.to_string())?;
         Ok(gif)
     }

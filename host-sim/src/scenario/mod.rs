@@ -200,6 +200,13 @@ impl Conditions {
         let named = settings.iter().map(|(option, _)| *option);
         let mut all = used.map(|(option, _)| option).chain(named);
         match all.find(|option| !has.contains(option)) {
+            Some("preset") => {
+                let expected = format!(
+                    "truthful {world}, where no look errs; rangers is for voxels, in town:SEED or \
+                     a --scene FILE"
+                );
+                Err(ScenarioError::setting("preset", self.preset, expected))
+            }
             Some(option) => Err(ScenarioError::NotHere { option, world }),
             None => Ok(()),
         }

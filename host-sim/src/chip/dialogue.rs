@@ -8,9 +8,9 @@ use planner_core::RobotId;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::book::Book;
 use super::emulator::Chip;
 use super::error::ChipError;
-use super::swarm::Book;
 use crate::measured::Call;
 
 /// A chip that fails leaves the reason in the book; from then on there are no answers,

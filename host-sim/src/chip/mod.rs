@@ -9,6 +9,7 @@
 //! own map must be that of the copy. A `SurveyProxy` is the same for a robot that
 //! flies, and a `VoxelProxy` for one among voxels, which runs the image `voxels`.
 
+mod book;
 mod dialogue;
 mod emulator;
 mod error;

@@ -1,23 +1,23 @@
 //! All chips of a run.
 
-use std::cell::{OnceCell, RefCell};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::time::Duration;
 
-use bridge::{Cost, Request, SurveyorConfig};
+use bridge::{Request, SurveyorConfig};
 use planner_core::sight::MAX_RADIUS;
 use planner_core::survey::{Knowledge, Limits, SetupError, Surveyor};
 use planner_core::voxel_survey::Config;
 use planner_core::{AnyPlanner, Extent, ExtentError, RobotId};
 
+use super::book::Book;
 use super::dialogue::Dialogue;
 use super::emulator::{Chip, Machine};
 use super::error::ChipError;
 use super::proxy::Proxy;
 use super::surveyor::SurveyProxy;
 use super::voxels::VoxelProxy;
-use crate::measured::{Call, Measured};
+use crate::measured::Measured;
 use crate::planners::{PlannerKind, Setup};
 use crate::record::grid::Trace;
 use crate::run::voxels::{self, Pilot};
@@ -38,38 +38,14 @@ pub struct Swarm {
     book: Rc<Book>,
 }
 
-/// What all chips of a run write down.
-pub(super) struct Book {
-    /// The first failure. The run is worth nothing after it, and ends.
-    pub(super) failure: OnceCell<ChipError>,
-    pub(super) measured: RefCell<Measured>,
-}
-
-impl Book {
-    /// Notes what a call took. The emulated chip's clock counts instructions: each
-    /// takes a nanosecond.
-    pub(super) fn count(&self, call: Call, cost: Cost, clock_hz: u64) {
-        let instructions = u64::from(cost.clock_ticks) * 1_000_000_000 / clock_hz;
-        let mut measured = self.measured.borrow_mut();
-        measured.count(call, instructions, cost.stack);
-    }
-}
-
 impl Swarm {
     /// Chips of this kind, which run the image at that path.
     pub fn new(machine: Machine, image: PathBuf) -> Self {
-        let measured = Measured {
-            machine: machine.to_string(),
-            ..Measured::default()
-        };
         Self {
+            book: Rc::new(Book::of(machine)),
             machine,
             image,
             limit: LIMIT,
-            book: Rc::new(Book {
-                failure: OnceCell::new(),
-                measured: measured.into(),
-            }),
         }
     }
 
@@ -116,10 +92,7 @@ impl Swarm {
         let Ok(book) = book else {
             unreachable!("the robots are gone with the run");
         };
-        match book.failure.into_inner() {
-            Some(failure) => Err(failure),
-            None => Ok(book.measured.into_inner()),
-        }
+        book.close()
     }
 }
 

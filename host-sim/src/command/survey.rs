@@ -302,6 +302,7 @@ impl Survey {
         folder.write_coverage(&Coverage::from(&trace))?;
         folder.write("map.bt", |file| Ok(trace.octree(all).write(file)?))?;
         folder.write("map.ply", |file| Ok(export::ply(&trace, file)?))?;
+        self.ways.warn_of_cover(trace.starts_covered());
         let ways = (0..trace.ways.len()).map(|robot| export::among_voxels(&trace, robot));
         self.ways.write(&mut folder, ways)?;
         let path = folder.path().to_path_buf();

@@ -95,11 +95,7 @@ pub(super) fn voxels(trace: &VoxelTrace, tick: u32, cut: Option<i16>) -> Drawn {
 /// The level at which a view from aside is cut unless somebody chose one: none if the first start is
 /// under the sky, or else [`rooms`], which a ceiling would hide.
 pub fn usual_cut(trace: &VoxelTrace) -> Option<i16> {
-    let start = trace.start()?;
-    let above = start.z.saturating_add(1)..i16::from(trace.scene.levels());
-    let mut above = above.map(|z| Voxel { z, ..start });
-    let is_covered = above.any(|voxel| trace.scene.is_occupied(voxel));
-    rooms(trace).filter(|_| is_covered)
+    rooms(trace).filter(|_| trace.starts_covered())
 }
 
 /// The level that shows rooms best: where the robots' map has most free voxels with something over

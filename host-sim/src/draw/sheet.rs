@@ -224,6 +224,9 @@ impl Sheet {
         imageops::replace(&mut sheet, &self.drawn.image, left, MARGIN.into());
         {
             let area = BitMapBackend::with_buffer(&mut sheet, size).into_drawing_area();
+            let (left, right) = (left as i32 - 1, left as i32 + map_width as i32);
+            let outline = [(left, MARGIN - 1), (right, bottom)];
+            area.draw(&Rectangle::new(outline, INK.stroke_width(1)))?;
             let y = bottom + MARGIN;
             arm.draw(&area, (2 * MARGIN, y + above + LINE / 2), self.axes)?;
             let beside = 5 * MARGIN + ARM as i32;

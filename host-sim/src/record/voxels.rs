@@ -68,6 +68,15 @@ impl VoxelTrace {
         self.ways.first().and_then(|way| way.first()).copied()
     }
 
+    /// Whether anything is over that place.
+    pub fn starts_covered(&self) -> bool {
+        self.start().is_some_and(|start| {
+            let above = start.z.saturating_add(1)..i16::from(self.scene.levels());
+            let mut above = above.map(|z| Voxel { z, ..start });
+            above.any(|voxel| self.scene.is_occupied(voxel))
+        })
+    }
+
     /// Steps until `share` of all that there is to see had been seen.
     pub fn ticks_to(&self, share: f64) -> Option<u32> {
         let wanted = (share * f64::from(self.visible)).ceil() as u32;

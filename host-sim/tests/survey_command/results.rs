@@ -50,6 +50,8 @@ fn a_scan_is_surveyed_voxel_by_voxel_and_its_map_lies_where_it_does() {
                      --home 60,-1 --json --out out";
     let assert = survey(path, arguments).assert().success();
     let summary: Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    let said = String::from_utf8_lossy(&assert.get_output().stderr);
+    assert!(said.contains("satellites do not reach"), "{said}");
     assert_eq!(summary["map"], "rooms");
     assert_eq!(summary["complete"], true);
     assert_eq!(summary["voxel_size"], 0.1);

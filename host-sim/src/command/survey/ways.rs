@@ -51,6 +51,16 @@ impl WayArgs {
         }
     }
 
+    /// Says what missions indoors need.
+    pub(super) fn warn_of_cover(&self, starts_covered: bool) {
+        if self.home.is_some() && starts_covered {
+            eprintln!(
+                "the robots start under something, where satellites do not reach: a mission of \
+                 --home needs a position of the vehicle's own there"
+            );
+        }
+    }
+
     /// Prepares the files that are asked for, of the ways of each robot in metres.
     pub(super) fn write(
         &self,

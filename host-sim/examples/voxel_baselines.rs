@@ -1,5 +1,5 @@
 //! How long a survey among voxels takes beside the closest frontier and a greedy centre, in
-//! towns, with all news shared at once; as a table for docs/survey.md:
+//! towns, with all news shared at once; as a table for docs/survey-figures.md:
 //!
 //! `cargo run --release -p host-sim --example voxel_baselines -- --towns 20`
 

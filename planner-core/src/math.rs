@@ -7,7 +7,7 @@
 //!
 //! With the feature `micromath` sine, cosine, exponential and arctangent are that
 //! crate's approximations: less flash and less time, above all without a
-//! floating-point unit; docs/survey.md has figures. They too are the same bits on
+//! floating-point unit; docs/survey-figures.md has figures. They too are the same bits on
 //! every target, but other bits than `libm`'s. What must not be approximate stays exact:
 //! square root and rounding, since the length of a step, the distance between robots
 //! and the column of a point depend on them, and so is the direction of a beam.

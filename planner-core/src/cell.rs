@@ -172,6 +172,8 @@ pub enum ExtentError {
         /// What fits.
         capacity: Extent,
     },
+    /// A box without levels.
+    NoLevels,
     /// The box has more levels than the map was compiled for.
     TooHigh {
         /// What was asked for.
@@ -192,6 +194,7 @@ impl fmt::Display for ExtentError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the grid has no cells"),
+            Self::NoLevels => write!(f, "the box has no levels"),
             Self::TooLarge { asked, capacity } => write!(
                 f,
                 "a grid of {asked} cells does not fit a map compiled for {capacity}"

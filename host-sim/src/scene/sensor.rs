@@ -104,14 +104,7 @@ impl Sensor {
     /// Its field on robots whose bodies reach so many voxels beyond the one of their middle: they
     /// feel where that comes to next.
     pub fn field_for(self, fov: Fov, clearance: u8) -> Field {
-        let field = self.field(fov);
-        Field {
-            near: match field.is_whole() {
-                true => field.near,
-                false => field.near.max(clearance + 1),
-            },
-            ..field
-        }
+        self.field(fov).for_body(clearance)
     }
 
     /// The sensor with this field, as far as bodies need to feel, and a camera's image; `None`: none of

@@ -179,3 +179,29 @@ proptest! {
         }
     }
 }
+
+/// A look that shows one wall far away is not the end of an exploration; without any look the
+/// robot waits.
+#[test]
+fn looks_that_show_little_complete_nothing() {
+    let start = Cell::new(3, 3);
+    let mut robot = Small::new(Config::new(), RobotId(1), Extent::new(20, 20), start).unwrap();
+    for _ in 0..1_000 {
+        assert_eq!(robot.tick(), Action::Wait);
+        assert_eq!(robot.waiting(), Some(Wait::Sight));
+    }
+    let mut look = Sighting::new(start);
+    look.see_blocked(Cell::new(9, 3));
+    for _ in 0..10_000 {
+        robot.observe(&look);
+        match robot.tick() {
+            Action::Move(_) => robot.report(Motion::Blocked),
+            Action::Wait => {}
+            Action::Stop(stop) => {
+                assert!(matches!(stop, Stop::Unseen { .. }), "{stop}");
+                return;
+            }
+        }
+    }
+    panic!("no stop");
+}

@@ -364,7 +364,9 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         }
         self.position = at;
         self.news.begin(at);
+        let mut is_silent = true;
         for &column in columns {
+            is_silent &= !self.surface.extent().contains(column.cell);
             if self.surface.learn(column) {
                 self.news.add(column.cell);
             }
@@ -372,7 +374,7 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.astray = self.sky().is_astray(at);
         self.errand.begin(at, self.had_room);
         self.had_room |= !self.astray;
-        if !columns.is_empty() {
+        if !is_silent {
             if self.silent >= SILENCE {
                 self.stopped = false;
             }
@@ -468,6 +470,10 @@ impl<const TW: usize, const TH: usize> Knowledge<TW, TH> {
         self.link.tick();
         if self.lost {
             return Some(self.wait(Wait::Pose));
+        }
+        if !self.errand.has_home() {
+            // Nothing seen yet is not the same as nothing left.
+            return Some(self.wait(Wait::Sight));
         }
         self.idle = if self.gain > 0.0 {
             0

@@ -126,6 +126,11 @@ impl Errand {
         }
     }
 
+    /// Whether the robot has had a good pose yet.
+    pub(super) const fn has_home(&self) -> bool {
+        matches!(self.home, Maybe::Just(_))
+    }
+
     /// It explores again, with as much energy as at first.
     pub(super) fn resume(&mut self) {
         if let Maybe::Just(_) = self.mission.budget() {

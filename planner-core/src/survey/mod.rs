@@ -107,9 +107,9 @@ pub trait Surveyor<const TW: usize, const TH: usize> {
     /// [`Wait::Pose`], until a pose is good again.
     ///
     /// What a survey rests on: a look from above a column, no farther from it than the
-    /// sensor's range, shows that column. A sensor that shows nothing from there a
+    /// sensor's range, shows that column. A sensor that shows no column of the map from there a
     /// hundred times in a row is taken to have failed: [`Stop::Unseen`](crate::Stop::Unseen),
-    /// until it shows something.
+    /// until it shows something. Before the first look the robot waits, for [`Wait::Sight`].
     fn observe(&mut self, at: Point, columns: &[Column]);
 
     /// Decides. Call it once per step.

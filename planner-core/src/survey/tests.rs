@@ -403,6 +403,32 @@ fn a_silent_sensor_is_a_reason_to_stop() {
     }
 }
 
+/// Looks at columns off the map, as from another origin, end a survey as those of a sensor that
+/// fails; before the first look the robot waits.
+#[test]
+fn looks_that_show_nothing_complete_nothing() {
+    for mut robot in [coordinated(), published()] {
+        for _ in 0..1_000 {
+            assert_eq!(robot.tick(), Action::Wait);
+            assert_eq!(robot.waiting(), Some(Wait::Sight));
+        }
+        let height = Height(0);
+        let cell = Cell::new(SIDE, 3);
+        let mut ticks = 0;
+        let stop = loop {
+            robot.observe(START, &[Column { cell, height }]);
+            match robot.tick() {
+                Action::Stop(stop) => break stop,
+                action => assert_eq!(action, Action::Wait),
+            }
+            ticks += 1;
+            assert!(ticks < 200);
+        };
+        assert!(matches!(stop, Stop::Unseen { .. }), "{stop}");
+        assert_eq!(resume(&mut robot, &World::default()), Stop::Complete);
+    }
+}
+
 /// A robot that starts on the ground rises, one above the ceiling sinks.
 #[test]
 fn too_low_rises_and_too_high_sinks() {

@@ -76,8 +76,10 @@ pub struct Field {
     /// of the image too. `None`: it shows all round, wherever it is turned.
     pub side: Option<u16>,
     /// Distance in voxels within which a look shows everything, in whatever direction: what
-    /// range finders all round tell. A robot that feels less than 2 flies only where its
-    /// field itself has shown every voxel beside its way.
+    /// range finders all round tell. A robot that feels less than one more than its clearance
+    /// flies only where its field itself has shown room for its body: it may survey little, or not
+    /// leave its start, and stop as out of reach, which counts as complete.
+    /// [`for_body`](Self::for_body) sets what a body needs.
     pub near: u8,
 }
 
@@ -121,6 +123,16 @@ impl Field {
         side: Some(256),
         near: 2,
     };
+
+    /// The same field of a robot whose body reaches `clearance` voxels beyond the one of its
+    /// middle: it feels at least where the body comes to next, `clearance` + 1 voxels far.
+    pub const fn for_body(self, clearance: u8) -> Self {
+        let next = clearance.saturating_add(1);
+        if self.is_whole() || self.near >= next {
+            return self;
+        }
+        Self { near: next, ..self }
+    }
 
     /// Whether a look shows the same wherever the sensor is turned.
     pub const fn is_round(&self) -> bool {

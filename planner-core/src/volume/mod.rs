@@ -176,6 +176,9 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     /// As [`new`](Self::new); the map is then unchanged.
     pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), ExtentError> {
         extent.fits(Extent::new((TW * TILE) as u16, (TH * TILE) as u16))?;
+        if levels == 0 {
+            return Err(ExtentError::NoLevels);
+        }
         if usize::from(levels) > L {
             return Err(ExtentError::TooHigh {
                 asked: levels,

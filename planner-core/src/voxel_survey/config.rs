@@ -16,7 +16,7 @@ pub struct Config {
     /// its voxel, with 1 those that share a face with it are kept free, then all within so many
     /// voxels. A ball of 0.5, 0.70, 1.58 and 2.54 voxels' radius touches nothing.
     pub clearance: u8,
-    /// What of that the sensors show.
+    /// What of that the sensors show; of a clearance of 2 or 3 [`Field::for_body`].
     pub field: Field,
     /// Whether they err.
     pub sensor: Sensor,

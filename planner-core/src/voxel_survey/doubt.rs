@@ -192,6 +192,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// The robot stands at `voxel`: nothing else is there.
     pub(super) fn stand(&mut self, voxel: Voxel) {
+        if self.volume.learn(voxel, false)
+            && let Some((tile, z, _)) = voxel.place()
+        {
+            self.news.add(tile, z);
+        }
         match self.sensor {
             Sensor::Truthful => self.volume.stand(voxel),
             Sensor::Errs if self.volume.content(voxel) == Content::Occupied => {

@@ -42,7 +42,8 @@
 //! most N times, anew whenever a voxel becomes free again: *progress*. Claim: between two of
 //! these there are boundedly many steps with good poses, whatever others say.
 //! 1. *A sensor that shows nothing*: the robot hovers, and after `SILENCE` such looks
-//!    in a row it stops, as complete if no unknown voxel is beside a free one.
+//!    in a row it stops, as complete if no unknown voxel is beside a free one. The voxel that it
+//!    is in is free from its first pose on: where nothing was seen, those beside it are unknown.
 //! 2. *Searching near* makes a pose done, or gives a way; where a slice is too short for that,
 //!    5 holds.
 //! 3. *Searching far*: the wave reaches each pose once, passes over each pose left to a
@@ -252,7 +253,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// is its name on the radio.
     ///
     /// # Errors
-    /// The box is larger than the map.
+    /// The box is empty or larger than the map.
     pub fn new(
         config: Config,
         id: RobotId,
@@ -340,14 +341,16 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// Begins a step: where the robot is, and every voxel in sight within the range and the
     /// field of a sensor that is turned to [`heading`](Self::heading), each with whether it is
     /// occupied. A voxel is in sight if
-    /// [`in_sight`](crate::volume::in_sight) over free voxels: at least the robot's own,
-    /// so a look that shows nothing is one of a sensor that failed.
+    /// [`in_sight`](crate::volume::in_sight) over free voxels: at least the robot's own. So a
+    /// look that shows no voxel of the box is one of a sensor that failed: the robot hovers, for
+    /// [`Wait::Sight`], and after 100 of them in a row, or ticks without a look, the stop is
+    /// [`Stop::Unseen`]. Before the first look it waits for as long as there is none.
     ///
     /// A robot that is where it was, and not where the last [`Action::Move`] sent it, was kept
     /// from there; one that is elsewhere was pushed.
-    /// From a place off the box or inside something known nothing is learnt and nothing
-    /// decided: the robot hovers, and [`waiting`](Self::waiting) is [`Wait::Pose`], until
-    /// a pose is good again.
+    /// From a place off the box nothing is learnt and nothing decided: the robot hovers, and
+    /// [`waiting`](Self::waiting) is [`Wait::Pose`], until a pose is good again. The voxel that
+    /// the robot is in is free, seen or not, whatever the map said of it.
     ///
     /// Cost: the voxels seen; and at most a ray for each voxel within range.
     pub fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
@@ -386,8 +389,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         self.doubts.look();
         let mut is_silent = true;
         for seen in seen {
-            is_silent = false;
             let &(voxel, occupied) = seen.borrow();
+            is_silent &= !self.volume.contains(voxel);
             // Where the robot is nothing else is.
             let occupied = occupied && voxel != at;
             if self.take_in(voxel, occupied)
@@ -479,11 +482,16 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     fn decide(&mut self) -> Action<Voxel, Voxel> {
         let known = self.volume.age();
-        if !core::mem::take(&mut self.looked) {
-            self.silent = self.silent.saturating_add(1);
-        }
+        let has_looked = core::mem::take(&mut self.looked);
         if self.lost {
             return self.wait(Wait::Pose);
+        }
+        if !self.mission.has_home() {
+            // Nothing seen yet is not the same as nothing left.
+            return self.wait(Wait::Sight);
+        }
+        if !has_looked {
+            self.silent = self.silent.saturating_add(1);
         }
         let (reason, known_then) = self.reason;
         if self.stopped && known_then == known {

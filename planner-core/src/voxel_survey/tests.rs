@@ -10,6 +10,7 @@ use crate::volume::{Content, VoxelPatch, body_voxels, in_sight};
 
 mod errs;
 mod fields;
+mod looks;
 mod mission;
 mod scenes;
 mod wind;

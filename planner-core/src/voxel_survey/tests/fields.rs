@@ -54,7 +54,7 @@ proptest! {
         for voxel in body_voxels(clearance, START) {
             walls.remove(&voxel);
         }
-        let field = Field { near: field.near.max(clearance + 1), ..field };
+        let field = field.for_body(clearance);
         let mut robot = robot(field, clearance);
         let mut at = START;
         let mut heading = Heading::new(3);

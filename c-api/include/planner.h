@@ -261,8 +261,9 @@ typedef enum {
   PLANNER_STATE_OBSTACLE = 4,
 } PlannerState;
 
-// What of the voxels within range and in sight a look shows. All but the last also feel what
-// is within 2 voxels all round, as by range finders.
+// What of the voxels within range and in sight a look shows. All but the last also show what
+// is within 2 voxels, or `clearance` + 1 if that is more, in every direction, as by range
+// finders all round: give these voxels with every look.
 typedef enum {
   // All of them.
   PLANNER_VOXEL_FIELD_ALL_ROUND = 0,
@@ -465,9 +466,10 @@ typedef struct {
   uint16_t down;
   // The tangent of half its width on the plan, in 256ths; 0: it shows all round.
   uint16_t side;
-  // Distance in voxels within which it shows everything in all directions. A robot that
-  // feels less than `clearance` + 1 flies only where its field itself has shown room for its
-  // body.
+  // Distance in voxels within which it shows everything in all directions: `clearance` + 1
+  // for a robot that is to fly everywhere. With less it flies only where its field itself
+  // has shown room for its body: it may survey little, or not leave its start, and stop with
+  // `PLANNER_STOP_OUT_OF_REACH`, which counts as complete.
   uint8_t near;
   // Side of a voxel in millimetres, above 0.
   uint16_t cell_mm;
@@ -881,9 +883,14 @@ PlannerResult planner_voxel_create(PlannerVoxelSurvey *survey,
 // Takes in a look: where the robot is, where its sensor is turned (eighths of a turn from
 // the east over the south; of no matter if it shows all round), and *every* voxel within
 // range, in the field and in sight over free ones, each with whether something is there. One
-// look is one call. A voxel that a look should show and never does ends in
-// `PLANNER_STOP_UNSEEN`, and 100 looks in a row that show nothing are those of a sensor that
-// failed. Voxels outside of the box are passed over.
+// look is one call, and shows at least the robot's own voxel, which is free whatever the map
+// said of it. A voxel is in sight if the straight line to it, from the middle of the robot's
+// voxel to its own, passes free voxels alone, of the two beside an edge at least one, and
+// about a corner two side by side. A voxel that a look should show and never does ends in
+// `PLANNER_STOP_UNSEEN`. So do 100 looks in a row without a voxel of the box, or ticks without
+// a look, as of a sensor that failed; the robot waits meanwhile, for `PLANNER_WAIT_SIGHT`, and
+// before its first look for as long as there is none. Voxels outside of the box are passed
+// over.
 //
 // A robot that is where it was, and not where the last move sent it, was kept from there;
 // one that is elsewhere was pushed, and flies on. `PLANNER_RESULT_OFF_GRID`: it is not in the

@@ -1,5 +1,6 @@
 //! The planner among voxels, against that in Rust.
 
+mod looks;
 mod misuse;
 
 use planner_core::radio::LinkConfig;

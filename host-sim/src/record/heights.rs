@@ -199,7 +199,7 @@ impl Trace {
     }
 
     /// What `robot` did, step by step.
-    pub fn of(&self, robot: usize) -> impl Iterator<Item = &Record> {
+    pub fn of(&self, robot: usize) -> impl Iterator<Item = &Record> + Clone {
         self.records
             .iter()
             .filter(move |record| usize::from(record.robot) == robot)

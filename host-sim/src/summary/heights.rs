@@ -4,7 +4,7 @@ use planner_core::surface::Height;
 use planner_core::{Point, RobotId, Stop};
 use serde::Serialize;
 
-use super::{Head, energy_left};
+use super::{End, Flown, Head};
 use crate::record::Deed;
 use crate::record::heights::{Safety, Trace};
 use crate::scenario::heights::Planner;
@@ -61,30 +61,11 @@ pub struct RobotSummary {
     pub blocked_steps: u32,
     /// Length of its way, in cells.
     pub distance: f64,
-    /// The same in metres, where the terrain has metres.
-    pub metres: Option<f64>,
-    /// Columns on its own map.
-    pub cells_known: u32,
     /// Its reward over the run [Renzaglia2019 eq. 1].
     pub reward: f64,
-    /// Work of its planner over the run.
-    pub work: u64,
-    /// Frames sent by radio.
-    pub frames_sent: u32,
-    /// Their bytes.
-    pub bytes_sent: u32,
-    /// [`Reason::name`](planner_core::Reason::name) of the stop; `null` if it had not
-    /// stopped.
-    pub stop: Option<&'static str>,
-    /// The reason in words.
-    pub stop_reason: Option<String>,
-    /// Whether it is where it started, or within a cell of it.
-    pub is_home: bool,
-    /// Steps of energy left when it had least; below 0 it flew for longer than its energy lasts.
-    /// `null`: nothing limits it.
-    pub energy_left: Option<i64>,
-    /// Whether it lived to the end of the run.
-    pub alive: bool,
+    /// What every summary says of a robot in the air.
+    #[serde(flatten)]
+    pub flown: Flown,
 }
 
 impl Summary {
@@ -149,28 +130,21 @@ impl RobotSummary {
         let legs = way.windows(2).map(|leg| f64::from(leg[0].distance(leg[1])));
         let distance = legs.sum();
         let start = trace.starts[robot];
-        let stop = trace.stops[robot];
-        let is_home = way.last().is_none_or(|at| at.distance(start) <= 1.0);
-        let faults = &trace.scenario.conditions.faults;
-        let last = trace.seen.len() as u32 - 1;
+        let end = End {
+            metres: trace.terrain.scale().map(|scale| distance * scale.cell),
+            stop: trace.stops[robot].map(|stop| (stop.reason(), reason(trace, stop))),
+            is_home: way.last().is_none_or(|at| at.distance(start) <= 1.0),
+        };
+        let ticks = trace.seen.len() as u32 - 1;
+        let conditions = &trace.scenario.conditions;
         let id = RobotId(robot as u8);
-        let deeds = trace.of(robot).map(|record| (record.tick, record.deed));
         Self {
             start: (start.x, start.y, start.z),
             steps: count(Deed::Flew),
             blocked_steps: count(Deed::Refused),
             distance,
-            metres: trace.terrain.scale().map(|scale| distance * scale.cell),
-            cells_known: trace.of(robot).last().map_or(0, |record| record.known),
             reward: trace.of(robot).map(|record| f64::from(record.gain)).sum(),
-            work: trace.of(robot).map(|record| u64::from(record.work)).sum(),
-            frames_sent: trace.of(robot).map(|record| record.sent.frames).sum(),
-            bytes_sent: trace.of(robot).map(|record| record.sent.bytes).sum(),
-            stop: stop.map(|stop| stop.reason().name()),
-            stop_reason: stop.map(|stop| reason(trace, stop)),
-            is_home,
-            energy_left: energy_left(&trace.scenario.conditions, id, deeds),
-            alive: faults.is_alive(id, last),
+            flown: Flown::new(id, trace.of(robot), conditions, ticks, end),
         }
     }
 }

@@ -4,10 +4,10 @@ mod grid;
 pub mod heights;
 pub mod voxels;
 
-use planner_core::RobotId;
+use planner_core::{Reason, RobotId};
 use serde::Serialize;
 
-use crate::record::Deed;
+use crate::record::{Deed, Kind, Record};
 use crate::scenario::{Conditions, Faults};
 
 pub use grid::{BodySummary, MotionSummary, RobotSummary, Summary};
@@ -41,6 +41,67 @@ pub struct Head {
     pub conditions: Conditions,
 }
 
+/// What every summary says of a robot in the air.
+#[derive(Clone, Debug, Serialize)]
+pub struct Flown {
+    /// Length of its way in metres, where the place has metres.
+    pub metres: Option<f64>,
+    /// Columns or voxels on its own map.
+    pub cells_known: u32,
+    /// Work of its planner over the run.
+    pub work: u64,
+    /// Frames sent by radio.
+    pub frames_sent: u32,
+    /// Their bytes.
+    pub bytes_sent: u32,
+    /// [`Reason::name`](planner_core::Reason::name) of the stop; `null` if it had not
+    /// stopped.
+    pub stop: Option<&'static str>,
+    /// The reason in words.
+    pub stop_reason: Option<String>,
+    /// Whether it is where it started, or within a cell of it.
+    pub is_home: bool,
+    /// Steps of energy left when it had least; below 0 it flew for longer than its energy lasts.
+    /// `null`: nothing limits it.
+    pub energy_left: Option<i64>,
+    /// Whether it lived to the end of the run.
+    pub alive: bool,
+}
+
+/// Where a robot in the air came to.
+struct End {
+    metres: Option<f64>,
+    stop: Option<(Reason, String)>,
+    is_home: bool,
+}
+
+impl Flown {
+    /// Of a robot with these records, in a run of so many ticks.
+    fn new<'a, K: Kind<Deed = Deed> + 'a>(
+        robot: RobotId,
+        own: impl Iterator<Item = &'a Record<K>> + Clone,
+        conditions: &Conditions,
+        ticks: u32,
+        end: End,
+    ) -> Self {
+        let deeds = own.clone().map(|record| (record.tick, record.deed));
+        let sent = || own.clone().map(|record| record.sent);
+        let (stop, stop_reason) = end.stop.map(|(stop, words)| (stop.name(), words)).unzip();
+        Self {
+            metres: end.metres,
+            cells_known: own.clone().last().map_or(0, |record| record.known),
+            work: own.clone().map(|record| u64::from(record.work)).sum(),
+            frames_sent: sent().map(|sent| sent.frames).sum(),
+            bytes_sent: sent().map(|sent| sent.bytes).sum(),
+            stop,
+            stop_reason,
+            is_home: end.is_home,
+            energy_left: energy_left(conditions, robot, deeds),
+            alive: conditions.faults.is_alive(robot, ticks),
+        }
+    }
+}
+
 /// The steps of energy that `robot`, which did `deeds`, had left when it had least: below 0 it
 /// was in the air for longer than its energy lasts. `None`: nothing limits its energy.
 fn energy_left(
@@ -62,8 +123,6 @@ fn energy_left(
 
 #[cfg(test)]
 mod tests {
-    use planner_core::Reason;
-
     use super::*;
     use crate::scenario::Event;
 

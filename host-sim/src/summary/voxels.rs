@@ -3,7 +3,7 @@
 use planner_core::RobotId;
 use serde::Serialize;
 
-use super::{Head, energy_left};
+use super::{End, Flown, Head};
 use crate::record::voxels::VoxelTrace;
 use crate::scenario::voxels::Planner;
 use crate::scene::{Free, Sensor};
@@ -59,32 +59,13 @@ pub struct RobotSummary {
     pub start: (i16, i16, i16),
     /// Flights.
     pub steps: usize,
-    /// Their length, where the scene has metres.
-    pub metres: Option<f64>,
-    /// Voxels on its own map.
-    pub cells_known: u32,
-    /// Free voxels that are occupied on it.
+    /// Free voxels that are occupied on its own map.
     pub cells_closed: u32,
     /// Occupied voxels that are free on it.
     pub cells_opened: u32,
-    /// Work of its planner over the run.
-    pub work: u64,
-    /// Frames sent by radio.
-    pub frames_sent: u32,
-    /// Their bytes.
-    pub bytes_sent: u32,
-    /// [`Reason::name`](planner_core::Reason::name) of the stop; `null` if it had not
-    /// stopped.
-    pub stop: Option<&'static str>,
-    /// The reason in words.
-    pub stop_reason: Option<String>,
-    /// Whether it is where it started, or in a voxel beside it.
-    pub is_home: bool,
-    /// Steps of energy left when it had least; below 0 it flew for longer than its energy lasts.
-    /// `null`: nothing limits it.
-    pub energy_left: Option<i64>,
-    /// Whether it lived to the end of the run.
-    pub alive: bool,
+    /// What every summary says of a robot in the air.
+    #[serde(flatten)]
+    pub flown: Flown,
 }
 
 impl Summary {
@@ -142,32 +123,24 @@ impl Summary {
 impl RobotSummary {
     fn new(trace: &VoxelTrace, robot: usize) -> Self {
         let way = &trace.ways[robot];
-        let own = || {
-            let records = trace.records.iter();
-            records.filter(move |record| usize::from(record.robot) == robot)
-        };
-        let faults = &trace.scenario.conditions.faults;
-        let last = trace.seen.len() as u32 - 1;
+        let records = trace.records.iter();
+        let own = records.filter(|record| usize::from(record.robot) == robot);
+        let ticks = trace.seen.len() as u32 - 1;
         let steps = way.windows(2).filter(|leg| leg[0] != leg[1]).count();
-        let frame = trace.scene.frame();
-        let id = RobotId(robot as u8);
-        let deeds = own().map(|record| (record.tick, record.deed));
         let wrong = trace.wrong.get(robot).copied().unwrap_or_default();
+        let frame = trace.scene.frame();
+        let end = End {
+            metres: frame.map(|frame| steps as f64 * frame.voxel_size),
+            stop: trace.stops[robot].map(|stop| (stop.reason(), stop.to_string())),
+            is_home: way[way.len() - 1].distance_squared(way[0]) <= 1,
+        };
+        let (id, conditions) = (RobotId(robot as u8), &trace.scenario.conditions);
         Self {
             start: (way[0].x, way[0].y, way[0].z),
             steps,
-            metres: frame.map(|frame| steps as f64 * frame.voxel_size),
-            cells_known: own().next_back().map_or(0, |record| record.known),
             cells_closed: wrong.closed,
             cells_opened: wrong.opened,
-            work: own().map(|record| u64::from(record.work)).sum(),
-            frames_sent: own().map(|record| record.sent.frames).sum(),
-            bytes_sent: own().map(|record| record.sent.bytes).sum(),
-            stop: trace.stops[robot].map(|stop| stop.reason().name()),
-            stop_reason: trace.stops[robot].map(|stop| stop.to_string()),
-            is_home: way[way.len() - 1].distance_squared(way[0]) <= 1,
-            energy_left: energy_left(&trace.scenario.conditions, id, deeds),
-            alive: faults.is_alive(id, last),
+            flown: Flown::new(id, own, conditions, ticks, end),
         }
     }
 }

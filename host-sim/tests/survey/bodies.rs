@@ -80,7 +80,10 @@ fn wide_robots_see_all_and_touch_nothing() {
             assert!(trace.all_stopped, "{case}");
             assert!(energy > 0 || trace.complete(), "{case}");
             let summary = Summary::new(&trace);
-            assert!(summary.robots.iter().all(|robot| robot.is_home), "{case}");
+            assert!(
+                summary.robots.iter().all(|robot| robot.flown.is_home),
+                "{case}"
+            );
         }
     }
     let clearances = [0.0, 0.1, 1.0, 1.1, 3.0, 3.1].map(clearance_for);
@@ -128,7 +131,7 @@ fn pushed_bodies_fly_back() {
         let mut ends = robots.iter().zip(&trace.stops);
         let is_held = |stop: &Option<Stop>| matches!(stop, Some(Stop::Held { .. }));
         assert!(
-            ends.all(|(robot, stop)| robot.is_home || is_held(stop)),
+            ends.all(|(robot, stop)| robot.flown.is_home || is_held(stop)),
             "{case}"
         );
     }

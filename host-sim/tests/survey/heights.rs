@@ -73,7 +73,7 @@ fn robots_come_home_in_time() {
             let summary = Summary::new(&trace);
             for (number, robot) in summary.robots.iter().enumerate() {
                 let case = format!("{planner:?} {robots} {energy}: robot {number} {robot:?}");
-                assert!(robot.is_home, "{case}");
+                assert!(robot.flown.is_home, "{case}");
                 let refused = robot.blocked_steps > 0;
                 let ticks = trace
                     .of(number)
@@ -159,7 +159,10 @@ fn wind_keeps_robots_from_nothing() {
             assert_eq!(trace.safety, Default::default(), "{case}");
             assert!(trace.complete() && trace.all_stopped, "{case}");
             let summary = Summary::new(&trace);
-            assert!(summary.robots.iter().all(|robot| robot.is_home), "{case}");
+            assert!(
+                summary.robots.iter().all(|robot| robot.flown.is_home),
+                "{case}"
+            );
             assert_eq!(trace.digest(), run(&terrain, &scenario).unwrap().digest());
         }
     }

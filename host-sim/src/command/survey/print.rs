@@ -4,9 +4,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use host_sim::scene::Free;
-use host_sim::summary::Head;
 use host_sim::summary::heights::Summary;
 use host_sim::summary::voxels::Summary as VoxelSummary;
+use host_sim::summary::{Flown, Head};
 
 /// The exit status; says what is left, if something is.
 pub(super) fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
@@ -43,38 +43,27 @@ fn after(ticks: Option<u32>) -> String {
 }
 
 pub(super) fn print(summary: &Summary, out: &Path) {
+    let places = "columns";
     print_head(
         &summary.head,
-        "columns",
+        places,
         summary.ticks_to_95,
         summary.violations,
     );
-    for (number, robot) in summary.robots.iter().enumerate() {
-        println!(
-            "  robot {number:<3} {:>6} steps, {:>6} columns known, {:>5} frames of {:>7} bytes sent, {}",
-            robot.steps,
-            robot.cells_known,
-            robot.frames_sent,
-            robot.bytes_sent,
-            state(robot.alive, robot.stop_reason.as_deref()),
-        );
-    }
-    print_metres(
-        summary.seconds.zip(summary.speed),
-        summary.robots.iter().filter_map(|robot| robot.metres),
-    );
-    print_home(
-        &summary.head,
-        (summary.robots.iter()).map(|robot| (robot.is_home, robot.energy_left)),
-    );
+    let robots = summary.robots.iter();
+    let robots: Vec<_> = robots
+        .map(|robot| (robot.steps.into(), &robot.flown))
+        .collect();
+    print_robots(&robots, places);
+    print_metres(summary.seconds.zip(summary.speed), &robots);
+    print_home(&summary.head, &robots);
     print_end(&summary.head, out);
 }
 
 pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
-    let places = "visible voxels";
     print_head(
         &summary.head,
-        places,
+        "visible voxels",
         summary.ticks_to_95,
         summary.violations,
     );
@@ -88,24 +77,13 @@ pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
             summary.bumps
         );
     }
-    for (number, robot) in summary.robots.iter().enumerate() {
-        println!(
-            "  robot {number:<3} {:>6} steps, {:>6} voxels known, {:>5} frames of {:>7} bytes sent, {}",
-            robot.steps,
-            robot.cells_known,
-            robot.frames_sent,
-            robot.bytes_sent,
-            state(robot.alive, robot.stop_reason.as_deref()),
-        );
-    }
-    print_metres(
-        summary.seconds.zip(summary.speed),
-        summary.robots.iter().filter_map(|robot| robot.metres),
-    );
-    print_home(
-        &summary.head,
-        (summary.robots.iter()).map(|robot| (robot.is_home, robot.energy_left)),
-    );
+    let robots = summary.robots.iter();
+    let robots: Vec<_> = robots
+        .map(|robot| (robot.steps as u64, &robot.flown))
+        .collect();
+    print_robots(&robots, "voxels");
+    print_metres(summary.seconds.zip(summary.speed), &robots);
+    print_home(&summary.head, &robots);
     println!("  clearance          {} voxels", summary.clearance);
     if let Some(free) = summary.free_space {
         let what = match free {
@@ -121,6 +99,21 @@ pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
         );
     }
     print_end(&summary.head, out);
+}
+
+/// The steps of each robot, and the rest.
+type Robots<'a> = [(u64, &'a Flown)];
+
+fn print_robots(robots: &Robots<'_>, places: &str) {
+    for (number, (steps, robot)) in robots.iter().enumerate() {
+        println!(
+            "  robot {number:<3} {steps:>6} steps, {:>6} {places} known, {:>5} frames of {:>7} bytes sent, {}",
+            robot.cells_known,
+            robot.frames_sent,
+            robot.bytes_sent,
+            state(robot.alive, robot.stop_reason.as_deref()),
+        );
+    }
 }
 
 fn print_head(head: &Head, places: &str, ticks_to_95: Option<u32>, violations: u32) {
@@ -141,27 +134,27 @@ fn print_head(head: &Head, places: &str, ticks_to_95: Option<u32>, violations: u
     println!("  violations         {violations}");
 }
 
-/// Seconds and speed, and the lengths of all ways, where there are any.
-fn print_metres(time: Option<(f64, f64)>, ways: impl Iterator<Item = f64>) {
+/// Seconds and speed, and the longest way, where there are any.
+fn print_metres(time: Option<(f64, f64)>, robots: &Robots<'_>) {
     if let Some((seconds, speed)) = time {
         println!("  time               {seconds:.0} s at {speed} m/s");
     }
+    let ways = robots.iter().filter_map(|(_, robot)| robot.metres);
     if let Some(most) = ways.reduce(f64::max) {
         println!("  longest way        {most:.1} m");
     }
 }
 
 /// How many are home that were to come there, and what they had left of their energy.
-fn print_home(head: &Head, robots: impl ExactSizeIterator<Item = (bool, Option<i64>)>) {
+fn print_home(head: &Head, robots: &Robots<'_>) {
     let mission = head.conditions.mission;
     if !mission.come_home && mission.energy == 0 {
         return;
     }
-    let (are_home, left): (Vec<_>, Vec<_>) = robots.unzip();
-    let home = are_home.iter().filter(|&&is_home| is_home).count();
-    println!("  at home            {home} of {} robots", are_home.len());
-    for (number, left) in left.into_iter().enumerate() {
-        match left {
+    let home = robots.iter().filter(|(_, robot)| robot.is_home).count();
+    println!("  at home            {home} of {} robots", robots.len());
+    for (number, (_, robot)) in robots.iter().enumerate() {
+        match robot.energy_left {
             None => {}
             Some(left) if left >= 0 => {
                 println!("  energy             robot {number} had {left} steps left");

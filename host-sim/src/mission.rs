@@ -62,5 +62,5 @@ impl MissionArgs {
 
 fn steps(text: &str) -> Result<u32, String> {
     let steps = text.parse().ok().filter(|&steps| steps > 0);
-    steps.ok_or_else(|| "expected a positive whole number of steps".into())
+    steps.ok_or_else(|| format!("expected 1 to {} steps", u32::MAX))
 }

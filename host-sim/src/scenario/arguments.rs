@@ -116,7 +116,8 @@ pub struct ConditionsArgs {
     #[arg(long, value_name = "ROBOT@FROM-UNTIL")]
     pose_lost: Vec<RobotSpan>,
     /// The robots' model of their sensors: truthful (always right), lidar (errors come and
-    /// go) or rangers (errors depend on the place). Explorer only. Default: truthful.
+    /// go) or rangers (errors depend on the place). For the explorer; among voxels truthful or rangers.
+    /// Default: truthful.
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
     /// In the air, flights and hovers end off where they should: along each axis by this many

@@ -130,11 +130,13 @@ pub enum ScenarioError {
         extent: Extent,
     },
     #[error(
-        "{robots} robots do not fit: they start from column 2, row 2 on, two columns apart, and \
-         the terrain has {extent} columns; {}", most_robots(*.most)
+        "{robots} robots do not fit: they start from the north-west corner on, {apart} columns \
+         apart, and the terrain has {extent} columns; {}", most_robots(*.most)
     )]
     NoRoom {
         robots: usize,
+        /// Columns from one to the next.
+        apart: u8,
         extent: Extent,
         /// How many do fit.
         most: usize,

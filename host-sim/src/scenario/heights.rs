@@ -118,6 +118,20 @@ impl Scenario {
         self
     }
 
+    /// The steepest slope, rise a column along a row or down a column, on which wide robots see
+    /// from where they cruise all ground that is under them a column on; over steeper ground they
+    /// search long, and leave some unseen. `None` of robots without a width.
+    pub fn slope(&self) -> Option<f32> {
+        let Limits {
+            range, clearance, ..
+        } = self.limits;
+        let radius = f32::from(clearance);
+        let across = (radius + 1.0) * std::f32::consts::SQRT_2;
+        let down = (range * range - across * across).max(0.0).sqrt();
+        let drop = down - self.limits.cruise(0.0);
+        (clearance > 0).then_some((drop / (2.0 * radius + 1.0)).max(0.0))
+    }
+
     /// Whether the scenario can be flown over some terrain.
     ///
     /// # Errors
@@ -211,6 +225,7 @@ impl Scenario {
         if !fit(self.robots) {
             return Err(ScenarioError::NoRoom {
                 robots: self.robots,
+                apart: apart(clearance),
                 extent,
                 most: (1..self.robots).rfind(|&most| fit(most)).unwrap_or(0),
             });

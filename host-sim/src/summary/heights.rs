@@ -37,6 +37,8 @@ pub struct Summary {
     pub step: f32,
     /// Radius of the robots, in columns.
     pub clearance: u8,
+    /// The steepest slope that wide robots see all of, rise a column.
+    pub slope: Option<f32>,
     /// Side of a column in metres, where the terrain says so.
     pub cell_size: Option<f64>,
     /// How fast robots fly, in metres a second, if that was said.
@@ -103,6 +105,7 @@ impl Summary {
             range: scenario.limits.range,
             step: scenario.limits.step,
             clearance: scenario.limits.clearance,
+            slope: scenario.slope(),
             cell_size: trace.terrain.scale().map(|scale| scale.cell),
             speed: None,
             seconds: None,

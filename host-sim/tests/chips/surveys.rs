@@ -7,7 +7,8 @@ use host_sim::run::heights;
 use host_sim::scenario::heights::{Planner, Scenario};
 use host_sim::scenario::{Event, Mission};
 use host_sim::terrain::Terrain;
-use planner_core::Reason;
+use planner_core::surface::Height;
+use planner_core::{Extent, Reason};
 
 use crate::{Largest, image};
 
@@ -21,26 +22,43 @@ fn on_chips(
     Ok((trace, swarm.finish()?))
 }
 
+/// Hills whose slopes wide robots see down.
+fn hills(side: u16) -> Terrain {
+    Terrain::from_fn(Extent::new(side, side), |cell| {
+        let away = (cell.x % 24 - 12).abs().max((cell.y % 24 - 12).abs());
+        Height(2 * (10 - away.clamp(2, 10)) as u8)
+    })
+}
+
 #[test]
 #[ignore = "needs QEMU and the image: cargo xtask test --only loop"]
 fn flying_robots_decide_on_the_chip_as_on_the_host() {
-    // The terrain, robots, share of messages lost and of steps slept through.
+    // The terrain, robots, share of messages lost and of steps slept through, clearance.
     let surveys = [
-        (Terrain::gaussian(1, 40), 1, 0.0, 0.0),
-        (Terrain::urban(2, 48), 3, 0.3, 0.0),
-        (Terrain::gaussian(3, 60), 4, 0.6, 0.2),
-        (Terrain::gaussian(4, 100), 4, 0.3, 0.0),
+        (Terrain::gaussian(1, 40), 1, 0.0, 0.0, 0),
+        (Terrain::urban(2, 48), 3, 0.3, 0.0, 0),
+        (Terrain::gaussian(3, 60), 4, 0.6, 0.2, 0),
+        (Terrain::gaussian(4, 100), 4, 0.3, 0.0, 0),
+        (hills(48), 3, 0.3, 0.0, 1),
+        (hills(48), 2, 0.0, 0.0, 3),
     ];
     let planners = [
-        (Planner::Fcao, "fcao"),
-        (Planner::CoordinatedSurvey, "coordinated_survey"),
-        (Planner::CoordinatedCubic, "coordinated_survey"),
+        (Planner::Fcao, ["fcao", "wide_fcao"]),
+        (
+            Planner::CoordinatedSurvey,
+            ["coordinated_survey", "wide_coordinated_survey"],
+        ),
+        (
+            Planner::CoordinatedCubic,
+            ["coordinated_survey", "wide_coordinated_survey"],
+        ),
     ];
     let mut largest = Largest::default();
     let mut explorations = 0;
-    for (seed, (terrain, robots, loss, skip)) in (0..).zip(surveys) {
-        for (planner, name) in planners {
-            let mut scenario = Scenario::new(planner, robots, seed);
+    for (seed, (terrain, robots, loss, skip, clearance)) in (0..).zip(surveys) {
+        for (planner, [narrow, wide]) in planners {
+            let scenario = Scenario::new(planner, robots, seed);
+            let mut scenario = scenario.with_clearance(clearance);
             (scenario.conditions.loss, scenario.skip) = (loss, skip);
             if robots > 2 {
                 scenario.conditions.faults.deaths = vec![Event::from((1, 20))];
@@ -48,7 +66,10 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
             let (there, measured) = on_chips(&terrain, &scenario, Machine::Netduinoplus2)
                 .unwrap_or_else(|error| panic!("{error}"));
             let here = heights::run(&terrain, &scenario).unwrap();
-            let title = format!("{planner:?} with {robots} robots over {}", terrain.extent());
+            let title = format!(
+                "{planner:?} with {robots} robots of clearance {clearance} over {}",
+                terrain.extent()
+            );
             for (here, there) in here.records.iter().zip(&there.records) {
                 assert_eq!(here, there, "{title}");
             }
@@ -57,13 +78,14 @@ fn flying_robots_decide_on_the_chip_as_on_the_host() {
             assert!(here.complete(), "{title}");
             let tick = measured.calls[&Call::Tick];
             println!(
-                "{title:<55} {:>5} steps {}  mean {:>7} largest {:>7}",
+                "{title:<66} {:>5} steps {}  mean {:>7} largest {:>7}",
                 here.seen.len() - 1,
                 here.digest(),
                 tick.mean,
                 tick.largest
             );
             let calls = [Call::Observe, Call::Tick, Call::Hear, Call::Join];
+            let name = if clearance == 0 { narrow } else { wide };
             largest.take(name, &calls, &measured);
             explorations += 1;
         }

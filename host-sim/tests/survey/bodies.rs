@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use host_sim::record::heights::Trace;
 use host_sim::run::heights::run;
 use host_sim::scenario::Wind;
-use host_sim::scenario::heights::{Scenario, clearance_for};
+use host_sim::scenario::heights::{Planner, Scenario, clearance_for};
 use host_sim::summary::heights::Summary;
 use host_sim::terrain::Terrain;
 use planner_core::surface::Height;
@@ -91,6 +91,34 @@ fn wide_robots_see_all_and_touch_nothing() {
         clearances,
         [Some(0), Some(1), Some(1), Some(2), Some(3), None]
     );
+}
+
+/// The slope that a scenario says is about the one from which on wide robots take long.
+#[test]
+fn wide_robots_are_fast_on_slopes_that_they_see() {
+    let steps = |slope: f32, clearance, range| {
+        // Waves of hills, whose heights are quarters of a cell.
+        let terrain = Terrain::from_fn(Extent::new(48, 48), |cell| {
+            let away = (cell.x % 24 - 12).abs();
+            Height((4.0 * slope * f32::from(away)) as u8)
+        });
+        let mut scenario = Scenario::new(Planner::CoordinatedSurvey, 2, 1);
+        scenario = scenario.with_clearance(clearance);
+        scenario.limits.range = range;
+        let trace = run(&terrain, &scenario).unwrap();
+        (trace.seen.len(), trace.complete(), scenario.slope())
+    };
+    for (clearance, range) in [(1, 6.0), (1, 8.0), (2, 8.0), (2, 12.0), (3, 12.0)] {
+        let (.., slope) = steps(0.0, clearance, range);
+        let slope = slope.expect("it is wide");
+        let (within, complete, _) = steps(0.9 * slope, clearance, range);
+        let (narrow, ..) = steps(0.9 * slope, 0, range);
+        let (beyond, ..) = steps(1.5 * slope + 0.5, clearance, range);
+        let case = format!("{clearance} {range} {slope}: {narrow}, {within}; {beyond}");
+        assert!(complete && within < 4 * narrow, "{case}");
+        assert!(beyond > 4 * within || beyond > 1000, "{case}");
+    }
+    assert_eq!(steps(0.0, 0, 8.0).2, None);
 }
 
 /// What keeps a body out keeps all of it out, and is named.

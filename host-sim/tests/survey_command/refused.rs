@@ -190,10 +190,7 @@ fn scenes_and_places_that_do_not_fit_are_refused() {
         ("--scene town:1", ["--scene town:1", "--terrain town:1"]),
         ("--scene hill.asc", ["hill.asc", "give --terrain hill.asc"]),
         ("--terrain none.asc", ["no such file", "ESRI ASCII grid"]),
-        (
-            "--energy -5",
-            ["--energy", "positive whole number of steps"],
-        ),
+        ("--energy -5", ["--energy", "expected 1 to"]),
         (
             "--scene rooms.bt --radius 0.07m",
             ["0.07m", "a number of metres"],

@@ -274,6 +274,22 @@ fn summaries_say_whether_robots_are_home_and_with_what_energy() {
 }
 
 #[test]
+fn what_wind_and_width_come_to_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = |arguments: &str| {
+        let output = survey(folder.path(), arguments).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let heights = said("--size 16 --robots 1 --wind 0.2 --clearance 1 --range 12");
+    assert!(heights.contains("steps that the wind ended"), "{heights}");
+    assert!(heights.contains("for slopes of at most 2."), "{heights}");
+    let voxels = said("--terrain town:1 --size 16 --robots 1 --wind 0.3");
+    assert!(voxels.contains("beside or in something"), "{voxels}");
+    let calm = said("--size 16 --robots 1");
+    assert!(!calm.contains("wind") && !calm.contains("slopes"), "{calm}");
+}
+
+#[test]
 fn a_survey_that_is_given_up_says_what_is_left() {
     let folder = tempfile::tempdir().unwrap();
     for place in ["gaussian:1", "town:1"] {

@@ -36,7 +36,9 @@
 //!    back to case 3; looks that may show nothing are steps of case 3.
 //! 3. *The recovery.* A round is a search, a goal, its edges, the next goal. Each
 //!    search looks at every tile once, so it ends; a goal that was looked over or
-//!    given up is not chosen again in the round. So there are at most F targets of 4
+//!    given up is not chosen again in the round, nor, if it was looked over, in later spells:
+//!    the ground did not change. Only when nothing else is left all that was looked over before
+//!    the spell is looked over again, once. So there are at most 2 F targets of 4
 //!    edges. One edge takes the wave of its way, which ends as it reaches each column
 //!    once; flights, each of which lowers `patience`; and climbs, each of which lowers
 //!    it as well. `patience` is set when an edge, a climb, or a leg begins. A *leg* is
@@ -82,7 +84,7 @@ const WAITS: u8 = 32;
 /// Steps that it has when one has left.
 const TIME: u16 = 8;
 
-/// Which frontiers have been looked over since the map last grew, and the one that is: the
+/// Which frontiers have been looked over, and the one that is: the
 /// part of a planner that decides after [`Limits::patience`](super::Limits::patience) steps
 /// without gain.
 #[derive(Clone, Debug)]
@@ -92,10 +94,12 @@ pub struct Recovery<const TW: usize, const TH: usize> {
     closed: Tiles<u64, TW, TH>,
     /// What refused a flight last in this spell, and whether it is a robot that was heard of.
     obstacle: Maybe<(Cell, bool)>,
-    /// Frontiers that were given up in this round for what was in the way, and whether
-    /// there are any.
+    /// Frontiers that were not looked over in this round after all, and whether something was in
+    /// the way to any.
     barred: Tiles<u64, TW, TH>,
     is_barred: bool,
+    /// Whether some were looked over before the map last grew.
+    is_old: bool,
     /// Whether borders of columns are crossed one by one.
     careful: bool,
     bumps: u8,
@@ -138,6 +142,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
             obstacle: Maybe::Nothing,
             barred: Tiles::all(0),
             is_barred: false,
+            is_old: false,
             careful: false,
             bumps: 0,
             round: 0,
@@ -164,6 +169,7 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
 
     /// Starts anew, in place.
     pub fn reset(&mut self) {
+        self.forget();
         self.begin_spell();
         self.careful = false;
         self.leg = Cell::new(0, 0);
@@ -180,8 +186,13 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
     }
 
     /// Nothing counts as tried.
-    fn begin_spell(&mut self) {
+    fn forget(&mut self) {
         self.tried.fill(0);
+        self.is_old = false;
+    }
+
+    /// What was looked over shows nothing else now: it counts as tried, until nothing else is left.
+    fn begin_spell(&mut self) {
         self.obstacle = Maybe::Nothing;
         self.bumps = 0;
         self.round = 0;
@@ -222,6 +233,10 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         let was_homeward = core::mem::take(&mut self.is_homeward);
         if self.known_columns != known_columns || is_resumed || was_homeward {
             self.known_columns = known_columns;
+            self.is_old = true;
+            if is_resumed || was_homeward {
+                self.forget();
+            }
             self.begin_spell();
             if self.careful || was_homeward {
                 // Ways led round what was closed.
@@ -326,6 +341,10 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
         };
         if step.is_some() && self.patience > 0 {
             return step;
+        }
+        if step.is_some() {
+            // Too late; when more is known there may be another way.
+            self.barred.insert(goal);
         }
         // Not there: a robot that is in the way may be why.
         if self.is_hindered {
@@ -467,6 +486,11 @@ impl<const TW: usize, const TH: usize> Recovery<TW, TH> {
             self.round = self.round.saturating_add(1);
             self.begin_round();
             return knowledge.wait(Wait::Closed);
+        }
+        if self.is_old {
+            self.forget();
+            self.begin_search();
+            return knowledge.wait(Wait::Search);
         }
         // Where nothing refused, columns were closed that cannot be flown to over known ground.
         let obstacle = self.obstacle.get().filter(|_| self.is_barred);

@@ -19,6 +19,9 @@ pub(super) fn ended(head: &Head, places: &str, violations: u32) -> ExitCode {
         head.reachable_cells,
         head.ticks,
     );
+    if head.ticks_to_stopped.is_none() {
+        eprintln!("not every robot had stopped: raise --max-ticks, or take larger cells");
+    }
     ExitCode::FAILURE
 }
 
@@ -57,6 +60,18 @@ pub(super) fn print(summary: &Summary, out: &Path) {
     print_robots(&robots, places);
     print_metres(summary.seconds.zip(summary.speed), &robots);
     print_home(&summary.head, &robots);
+    print_wind(
+        &summary.head,
+        summary.contacts,
+        "on the ground or too near to another robot",
+    );
+    if let Some(slope) = summary.slope {
+        println!(
+            "  clearance          {} columns; with this range and least altitude for slopes of at \
+             most {slope:.2}",
+            summary.clearance
+        );
+    }
     print_end(&summary.head, out);
 }
 
@@ -84,6 +99,7 @@ pub(super) fn print_voxels(summary: &VoxelSummary, out: &Path) {
     print_robots(&robots, "voxels");
     print_metres(summary.seconds.zip(summary.speed), &robots);
     print_home(&summary.head, &robots);
+    print_wind(&summary.head, summary.contacts, "beside or in something");
     println!("  clearance          {} voxels", summary.clearance);
     if let Some(free) = summary.free_space {
         let what = match free {
@@ -113,6 +129,13 @@ fn print_robots(robots: &Robots<'_>, places: &str) {
             robot.bytes_sent,
             state(robot.alive, robot.stop_reason.as_deref()),
         );
+    }
+}
+
+/// What the wind did.
+fn print_wind(head: &Head, contacts: u32, with: &str) {
+    if !head.conditions.wind.is_none() {
+        println!("  contacts           {contacts} steps that the wind ended {with}");
     }
 }
 

@@ -18,12 +18,39 @@ const VOXEL_WORK: [u32; MAX_CLEARANCE as usize + 1] = [0, 0, 14, 32];
 /// Higher than the highest level.
 const NO_LEVEL: u8 = u8::MAX;
 
+/// Clearances that there are, and distances along an axis.
+const SIDES: usize = MAX_CLEARANCE as usize + 1;
+
+/// Of the ball of each clearance, how far it reaches along a row that is so far away along the
+/// other axes; [`NO_ROW`] where it has none.
+const REACHES: [[[u8; SIDES]; SIDES]; SIDES] = reaches();
+const NO_ROW: u8 = u8::MAX;
+
+const fn reaches() -> [[[u8; SIDES]; SIDES]; SIDES] {
+    let mut reaches = [[[NO_ROW; SIDES]; SIDES]; SIDES];
+    let mut number = 0;
+    while number < SIDES * SIDES * SIDES {
+        let [c, y, z] = [
+            number / SIDES / SIDES,
+            number / SIDES % SIDES,
+            number % SIDES,
+        ];
+        if let Some(rest) = (c * c).checked_sub(y * y + z * z) {
+            reaches[c][y][z] = rest.isqrt() as u8;
+        }
+        number += 1;
+    }
+    reaches
+}
+
 /// How far the ball reaches along a row that is so far away along the other axes; `None` where
 /// it has none.
 fn reach(clearance: u8, dy: i16, dz: i16) -> Option<i16> {
-    let [c, y, z] = [i16::from(clearance), dy, dz].map(i16::unsigned_abs);
-    let rest = (c * c).checked_sub(y * y + z * z)?;
-    Some(rest.isqrt() as i16)
+    let [y, z] = [dy, dz].map(|d| usize::from(d.unsigned_abs()));
+    match *REACHES.get(usize::from(clearance))?.get(y)?.get(z)? {
+        NO_ROW => None,
+        reach => Some(reach.into()),
+    }
 }
 
 /// The rows of a ball: how far each is away along y and z, and its reach.

@@ -366,21 +366,26 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
 
     /// The unknown voxels of a tile of a level.
     pub(crate) fn unknown(&self, tile: TileIndex, z: u8) -> u64 {
-        match self.known.word(tile, z) {
+        let mut known = self.known.word(tile, z);
+        if self.withdrawn > 0 {
+            known |= self.occupied.word(tile, z);
+        }
+        match known {
             u64::MAX => 0,
-            known if self.withdrawn > 0 => {
-                self.inside(tile, z) & !(known | self.occupied.word(tile, z))
-            }
-            known => self.inside(tile, z) & !known,
+            _ => self.inside(tile, z) & !known,
         }
     }
 
     /// The voxels of a tile of a level that lie in the box.
+    #[inline(always)] // in the innermost loop
     pub(crate) fn inside(&self, tile: TileIndex, z: u8) -> u64 {
-        if z < self.levels {
-            tile.inside(self.extent)
-        } else {
+        let is_whole = |tile: u8, cells: u16| u16::from(tile) < cells / TILE as u16;
+        if z >= self.levels {
             0
+        } else if is_whole(tile.x, self.extent.width) && is_whole(tile.y, self.extent.height) {
+            u64::MAX
+        } else {
+            tile.inside(self.extent)
         }
     }
 

@@ -28,15 +28,13 @@ const RAY: u32 = 3;
 /// The rows of one level: bit `REACH + dx` of row `REACH + dy`.
 type Slab = [u32; SPAN];
 
-/// What stops sight about an eye.
+/// A look from an eye: how far it goes, and what it takes.
 pub(crate) struct View {
     eye: Voxel,
     reach: u8,
     /// How far to look east, south and up, and how far west, north and down.
     ahead: [u8; 3],
     back: [u8; 3],
-    /// Level by level, from the lowest.
-    blocked: [Slab; SPAN],
     /// Words and rows looked at, and 3 for each ray: some 150 instructions each on a
     /// Cortex-M4.
     pub(crate) work: u32,
@@ -58,8 +56,15 @@ impl Row {
         self.bits.count_ones()
     }
 
+    /// Leaves out those of a layer.
+    pub(crate) fn leave_out(&mut self, layer: impl Fn(Voxel) -> bool) {
+        for voxel in self.voxels(u32::MAX).filter(|&voxel| layer(voxel)) {
+            self.bits &= !(1 << index(voxel.x.saturating_sub(self.eye.x)));
+        }
+    }
+
     /// Those of `bits`.
-    pub(crate) fn voxels(&self, among: u32) -> impl Iterator<Item = Voxel> {
+    pub(crate) fn voxels(&self, among: u32) -> impl Iterator<Item = Voxel> + use<> {
         let Self {
             eye,
             south,
@@ -74,6 +79,9 @@ impl Row {
         bits((own & among).into()).map(move |bit| Voxel::new(x.saturating_add(bit as i16), y, z))
     }
 }
+
+/// What is done with a row; says whether to look on.
+type Found<'a> = dyn FnMut(Row) -> ControlFlow<()> + 'a;
 
 /// What the bounds say of a row of an octant, the eye's side at bit 0.
 #[derive(Clone, Copy)]
@@ -117,7 +125,6 @@ impl View {
             reach: if reach > MAX_REACH { MAX_REACH } else { reach },
             ahead: [0; 3],
             back: [0; 3],
-            blocked: [[0; SPAN]; SPAN],
             work: 0,
         }
     }
@@ -127,26 +134,42 @@ impl View {
     /// Cost: every tile of a level within reach.
     pub(crate) fn aim(&mut self, wanted: impl Fn(TileIndex, u8) -> u64) -> bool {
         let Self { eye, reach, .. } = *self;
-        let (mut least, mut most) = ([u8::MAX; 3], [0; 3]);
-        let mut words = 0;
         let (columns, rows) = (span(eye.x, reach, reach, 3), span(eye.y, reach, reach, 3));
-        for z in span(eye.z, reach, reach, 0) {
-            for y in rows.clone() {
-                for x in columns.clone() {
-                    words += 1;
+        let levels = span(eye.z, reach, reach, 0);
+        // They take less than others do.
+        let words = columns.len() * rows.len() * levels.len() / 2;
+        self.work = self.work.saturating_add(words as u32);
+        // The columns, rows and levels that have any, a bit each from the first on.
+        let (mut in_columns, mut in_rows, mut on_levels) = (0u32, 0u32, 0u32);
+        for (z, level) in levels.clone().zip(0..) {
+            let mut in_rows_here = 0;
+            for (y, row) in rows.clone().zip(0..) {
+                let mut in_columns_here = 0;
+                for (x, column) in columns.clone().zip(0..) {
                     if wanted(TileIndex { x, y }, z) != 0 {
-                        least = [least[0].min(x), least[1].min(y), least[2].min(z)];
-                        most = [most[0].max(x), most[1].max(y), most[2].max(z)];
+                        in_columns_here |= 1 << column;
                     }
                 }
+                in_columns |= in_columns_here;
+                in_rows_here |= u32::from(in_columns_here != 0) << row;
             }
+            in_rows |= in_rows_here;
+            on_levels |= u32::from(in_rows_here != 0) << level;
         }
-        // They take less than others do.
-        self.work = self.work.saturating_add(words / 2);
+        let first = |from: u8, any: u32| i16::from(from) + any.trailing_zeros() as i16;
+        let last = |from: u8, any: u32| i16::from(from) + any.checked_ilog2().unwrap_or(0) as i16;
+        let tile = |at: i16| at * TILE as i16;
+        let from = [
+            tile(first(columns.start, in_columns)),
+            tile(first(rows.start, in_rows)),
+            first(levels.start, on_levels),
+        ];
+        let to = [
+            tile(last(columns.start, in_columns)) + 7,
+            tile(last(rows.start, in_rows)) + 7,
+            last(levels.start, on_levels),
+        ];
         let far = |d: i16| d.clamp(0, reach.into()) as u8;
-        let tile = |at: u8| i16::from(at) * TILE as i16;
-        let from = [tile(least[0]), tile(least[1]), least[2].into()];
-        let to = [tile(most[0]) + 7, tile(most[1]) + 7, most[2].into()];
         let [x, y, z] = [eye.x, eye.y, eye.z];
         self.ahead = [
             far(to[0].saturating_sub(x)),
@@ -158,7 +181,7 @@ impl View {
             far(y.saturating_sub(from[1])),
             far(z.saturating_sub(from[2])),
         ];
-        least[2] <= most[2]
+        on_levels != 0
     }
 
     /// Gives those of `wanted` that are looked at, within reach and in sight where `blocked` is
@@ -174,6 +197,8 @@ impl View {
     ) -> ControlFlow<()> {
         let Self { ahead, back, .. } = *self;
         self.work = self.work.saturating_add(BEGIN);
+        // Level by level, from the lowest.
+        let mut levels = [[0; SPAN]; SPAN];
         for is_down in [false, true] {
             let mut fronts = [[START; REACH + 1]; 4];
             let most = if is_down { back[2] } else { ahead[2] };
@@ -183,7 +208,7 @@ impl View {
             for k in 0..=u32::from(most) {
                 let dz = signed(k, is_down);
                 let stops = self.slab(dz, &blocked);
-                if let Some(place) = self.blocked.get_mut(index(dz)) {
+                if let Some(place) = levels.get_mut(index(dz)) {
                     *place = stops;
                 }
                 let slab = self.slab(dz, &wanted);
@@ -199,7 +224,8 @@ impl View {
                     };
                     let is_empty = is_west && back[0] == 0 || is_north && back[1] == 0;
                     if !is_empty {
-                        is_reached |= self.look_at_level(octant, k, &slab, fronts, &mut found)?;
+                        is_reached |=
+                            self.look_at_level(octant, k, &levels, &slab, fronts, &mut found)?;
                     }
                 }
                 if !is_reached {
@@ -217,14 +243,14 @@ impl View {
         &mut self,
         octant: Octant,
         k: u32,
+        levels: &[Slab; SPAN],
         wanted: &Slab,
         fronts: &mut [Front; REACH + 1],
-        found: &mut impl FnMut(Row) -> ControlFlow<()>,
+        found: &mut Found<'_>,
     ) -> ControlFlow<(), bool> {
         let Self {
             eye,
             reach,
-            blocked: ref levels,
             ref mut work,
             ..
         } = *self;
@@ -385,11 +411,17 @@ fn is_clear(levels: &[Slab; SPAN], away: [u32; 3], octant: Octant) -> bool {
             here = after;
             let next = x.min(y).min(z);
             crossed = 0;
-            for (at, step) in [(&mut x, steps[0]), (&mut y, steps[1]), (&mut z, steps[2])] {
-                if *at == next {
-                    *at += 2 * step;
-                    crossed += 1;
-                }
+            if x == next {
+                x += 2 * steps[0];
+                crossed += 1;
+            }
+            if y == next {
+                y += 2 * steps[1];
+                crossed += 1;
+            }
+            if z == next {
+                z += 2 * steps[2];
+                crossed += 1;
             }
         }
         left = left.saturating_sub(crossed);

@@ -9,7 +9,7 @@ use crate::volume::{Heading, View, Voxel, word_work};
 /// Work of a word of which the poses are found.
 const WORD: u32 = 10;
 
-/// Work of telling which headings show a row.
+/// Work of telling which headings show a row, or what of it is looked for.
 const SHOWN: u32 = 3;
 
 /// What sight goes over.
@@ -100,26 +100,25 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     fn count(&mut self, pose: Voxel, enough: u32, between: Between) -> (u32, Heading) {
         let (volume, field) = (&self.volume, self.field);
         let looked = self.looked_from(pose);
-        let given_up = self
-            .doubts
-            .is_weary(volume.known_voxels())
-            .then_some(&self.missed);
-        let wanted = |tile, z| match (volume.unknown(tile, z), given_up) {
-            (unknown, Some(missed)) if unknown != 0 => unknown & !missed.word(tile, z),
-            (unknown, _) => unknown,
-        };
+        let unknown = |tile, z| volume.unknown(tile, z);
+        let (missed, is_weary) = (&self.missed, self.doubts.is_weary(volume.known_voxels()));
         let mut view = View::new(pose, self.range);
         let mut gains = Gains::default();
         let mut most = 0u32;
         let mut rows = 0u32;
-        if view.aim(wanted) {
+        if view.aim(unknown) {
             let _ = view.look(
                 |tile, z| match between {
                     Between::Free => volume.bad(tile, z),
                     Between::NotOccupied => volume.occupied(tile, z),
                 },
-                wanted,
-                |row| {
+                unknown,
+                |mut row| {
+                    if is_weary {
+                        // What looks have missed is not looked for any more.
+                        rows = rows.saturating_add(1);
+                        row.leave_out(|voxel| missed.get(voxel));
+                    }
                     if field.is_whole() {
                         most = most.saturating_add(row.count());
                     } else {

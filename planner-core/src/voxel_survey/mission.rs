@@ -90,6 +90,13 @@ impl Mission {
         self.errand = Maybe::Nothing;
     }
 
+    /// A survey that has ended goes on: the robot may be where it has not surveyed.
+    pub(super) fn reopen_survey(&mut self) {
+        if let Maybe::Just(End::Survey(..)) = self.errand {
+            self.end_errand();
+        }
+    }
+
     /// Whether the robot has been anywhere yet.
     pub(super) const fn has_home(&self) -> bool {
         matches!(self.home, Maybe::Just(_))

@@ -383,6 +383,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.pushes = self.pushes.saturating_add(1);
             self.is_adrift = true;
             self.far.lose_robot();
+            self.mission.reopen_survey();
         }
         self.arrive(at);
         self.closed.clear(at);

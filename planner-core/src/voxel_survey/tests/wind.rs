@@ -108,3 +108,32 @@ fn a_pushed_robot_flies_back() {
     }
     assert!(!robot.is_closed);
 }
+
+/// What has ended where the robot was may go on where a push takes it; the way home that was
+/// asked for stays.
+#[test]
+fn a_push_on_the_way_home_reopens_a_survey_that_has_ended() {
+    for is_told in [false, true] {
+        let config = Config {
+            come_home: true,
+            ..CONFIG
+        };
+        let mut robot = Robot::new(config, RobotId(0), EXTENT, LEVELS).unwrap();
+        let walls = BTreeSet::new();
+        for x in [START.x, START.x + 2] {
+            let at = Voxel::new(x, START.y, START.z);
+            robot.observe(at, &look(&walls, at));
+            robot.tick();
+        }
+        match is_told {
+            true => robot.go_home(),
+            false => {
+                robot.end(Stop::OutOfReach { frontiers: 1 });
+            }
+        }
+        assert!(robot.mission.has_errand());
+        let at = Voxel::new(START.x + 4, START.y, START.z);
+        robot.observe(at, &look(&walls, at));
+        assert_eq!(robot.mission.has_errand(), is_told);
+    }
+}

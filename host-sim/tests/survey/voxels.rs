@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use host_sim::record::voxels::VoxelTrace;
 use host_sim::run::voxels::run;
-use host_sim::scenario::MediumKind;
 use host_sim::scenario::voxels::{Planner, Scenario};
+use host_sim::scenario::{MediumKind, Preset};
 use host_sim::scene::{self, Scene};
 use planner_core::Extent;
 use planner_core::volume::{Content, Field};
@@ -96,6 +96,33 @@ fn baselines_among_voxels_see_all_and_stop_truthfully() {
         trace.write(&mut file).unwrap();
         let read = VoxelTrace::read(&file[..]).unwrap();
         assert_eq!(read.scenario, trace.scenario);
+    }
+}
+
+/// What the planner is compared with believes what it sees: looks that err are refused by name.
+#[test]
+fn baselines_among_voxels_refuse_looks_that_err() {
+    let errs: [(&str, fn(&mut Scenario)); 3] = [
+        ("false-walls", |scenario| {
+            scenario.conditions.trouble.false_walls = 0.01;
+        }),
+        ("false-frees", |scenario| {
+            scenario.conditions.trouble.false_frees = 0.01;
+        }),
+        ("preset", |scenario| {
+            scenario.conditions.preset = Preset::Rangers;
+        }),
+    ];
+    for planner in [Planner::ClosestFrontier, Planner::Greedy] {
+        for (option, err) in errs {
+            let mut scenario = Scenario::new(2, 1);
+            err(&mut scenario);
+            scenario.check(&Scene::town(2, 20)).unwrap();
+            scenario.planner = planner;
+            let error = run(&Scene::town(2, 20), &scenario).unwrap_err().to_string();
+            let names_it = error.contains(option) && error.contains("believes every look");
+            assert!(names_it, "{error}");
+        }
     }
 }
 

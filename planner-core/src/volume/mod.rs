@@ -344,6 +344,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     }
 
     /// The free voxels of a tile of a level.
+    #[inline(always)] // in the innermost loop
     pub(crate) fn free(&self, tile: TileIndex, z: u8) -> u64 {
         self.known.word(tile, z) ^ self.occupied.word(tile, z)
     }

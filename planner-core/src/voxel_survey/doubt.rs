@@ -3,9 +3,10 @@
 use heapless::Vec;
 
 use super::VoxelSurvey;
+use super::gain::within;
 use crate::list;
 use crate::robot::{Action, Wait};
-use crate::tile::{TILE, TileIndex};
+use crate::tile::TileIndex;
 use crate::volume::{Content, Voxel};
 
 /// What a fleet takes its sensors for.
@@ -223,14 +224,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// Cost: a word for each tile of a level within range.
     pub(super) fn undo(&mut self, tile: TileIndex, z: u8) {
-        let tiles = self.range.div_ceil(TILE as u8);
-        let span = |at: u8, by: u8| at.saturating_sub(by)..=at.saturating_add(by);
-        for z in span(z, self.range) {
-            for y in span(tile.y, tiles) {
-                for x in span(tile.x, tiles) {
-                    self.done.put(TileIndex { x, y }, z, 0);
-                }
-            }
+        for (tile, z) in within(self.range, tile, z) {
+            self.done.put(tile, z, 0);
         }
     }
 

@@ -51,17 +51,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     ///
     /// Cost: 14 words for each tile of a level within range, until there is one.
     pub(super) fn finish_word(&mut self, tile: TileIndex, z: u8, open: u64) -> bool {
-        let tiles = self.range.div_ceil(TILE as u8);
-        let span = |at: u8, by: u8| at.saturating_sub(by)..=at.saturating_add(by);
-        let (columns, rows) = (span(tile.x, tiles), span(tile.y, tiles));
-        for z in span(z, self.range) {
-            for y in rows.clone() {
-                for x in columns.clone() {
-                    self.work = self.work.saturating_add(1);
-                    if self.volume.unknown_beside_free(TileIndex { x, y }, z) != 0 {
-                        return false;
-                    }
-                }
+        for (tile, z) in within(self.range, tile, z) {
+            // Where all is known this takes half as much, and beside what is unknown twice.
+            self.work = self.work.saturating_add(1);
+            if self.volume.unknown_beside_free(tile, z) != 0 {
+                return false;
             }
         }
         self.done.add(tile, z, open);
@@ -198,6 +192,28 @@ impl Gains {
         }
         best
     }
+}
+
+/// The tiles of levels, of which some may lie outside of the box, that anything within range of
+/// one of them may lie in.
+pub(super) fn within(range: u8, tile: TileIndex, z: u8) -> impl Iterator<Item = (TileIndex, u8)> {
+    let tiles = range.div_ceil(TILE as u8);
+    let first = TileIndex::new(tile.x.saturating_sub(tiles), tile.y.saturating_sub(tiles));
+    let last = TileIndex::new(tile.x.saturating_add(tiles), tile.y.saturating_add(tiles));
+    // There are at most 255 levels: none has the last number.
+    let top = z.saturating_add(range).min(u8::MAX - 1);
+    let mut next = (first, z.saturating_sub(range));
+    core::iter::from_fn(move || {
+        let (tile, level) = next;
+        next = if tile.x < last.x {
+            (TileIndex::new(tile.x + 1, tile.y), level)
+        } else if tile.y < last.y {
+            (TileIndex::new(first.x, tile.y + 1), level)
+        } else {
+            (first, level.saturating_add(1))
+        };
+        (level <= top).then_some((tile, level))
+    })
 }
 
 /// The voxels of a tile of a level whose bits are set.

@@ -436,6 +436,28 @@ fn a_reset_robot_is_a_new_one() {
     assert_eq!(std::format!("{robot:?}"), std::format!("{new:?}"));
 }
 
+/// Also where numbers of tiles and levels end.
+#[test]
+fn what_is_within_range_is_told_once() {
+    for (range, x, y, z) in [
+        (4u8, 0u8, 0u8, 0u8),
+        (12, 3, 1, 9),
+        (8, 2, 2, 250),
+        (12, 62, 63, 254),
+    ] {
+        let tiles = range.div_ceil(8);
+        let mut expected = Vec::new();
+        for level in z.saturating_sub(range)..=z.saturating_add(range).min(254) {
+            for row in y.saturating_sub(tiles)..=y + tiles {
+                let columns = x.saturating_sub(tiles)..=x + tiles;
+                expected.extend(columns.map(|column| (TileIndex::new(column, row), level)));
+            }
+        }
+        let found = gain::within(range, TileIndex::new(x, y), z);
+        assert_eq!(found.collect::<Vec<_>>(), expected);
+    }
+}
+
 /// Whole state for 40×40×16 voxels.
 #[test]
 fn a_robot_fits_into_24_kib() {

@@ -30,7 +30,11 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             self.is_adrift = false;
             return None;
         }
-        self.fly_to_a_pose().map(Action::Move)
+        let next = self.fly_to_a_pose()?;
+        // No progress, until something is learnt or done with.
+        self.fruitless = self.fruitless.saturating_add(1);
+        self.last_known = self.volume.age();
+        Some(Action::Move(next))
     }
 
     /// The first step to the nearest pose, over free voxels.

@@ -127,6 +127,8 @@ enum Place {
     Winding,
     /// Open, but for voxels that nothing shows.
     Open,
+    /// Open below a roof; all above it is unknown.
+    Roofed,
 }
 
 /// Places of each kind that chance makes.
@@ -141,7 +143,7 @@ impl Place {
     fn all() -> impl Iterator<Item = Self> {
         let scattered = (0..SEEDS).map(Self::Scattered);
         let rooms = (0..SEEDS).map(Self::Rooms);
-        let made = [Self::Winding, Self::Open].into_iter();
+        let made = [Self::Winding, Self::Open, Self::Roofed].into_iter();
         made.chain(scattered).chain(rooms)
     }
 
@@ -149,7 +151,9 @@ impl Place {
     const fn own(self) -> Voxel {
         match self {
             Self::Winding => Voxel::new(1, 1, 1),
-            Self::Scattered(_) | Self::Rooms(_) | Self::Open => Voxel::new(20, 20, 4),
+            Self::Scattered(_) | Self::Rooms(_) | Self::Open | Self::Roofed => {
+                Voxel::new(20, 20, 4)
+            }
         }
     }
 
@@ -197,6 +201,11 @@ impl Place {
                     _ => Kind::Free,
                 }
             }
+            Self::Roofed => match z {
+                ..7 => Kind::Free,
+                7 => Kind::Occupied,
+                _ => Kind::Unknown,
+            },
         }
     }
 }

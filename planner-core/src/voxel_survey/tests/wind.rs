@@ -87,15 +87,17 @@ proptest! {
     }
 }
 
+/// The floor, but for a shaft in it that is one voxel wide; and the shaft from its mouth down.
+fn shaft() -> (BTreeSet<Voxel>, [Voxel; 3]) {
+    let shaft = [2, 1, 0].map(|z| Voxel::new(START.x, START.y, z));
+    let walls = all().filter(|voxel| voxel.z < 3 && !shaft.contains(voxel));
+    (walls.collect(), shaft)
+}
+
 /// A push closes nothing, and a robot off all poses flies back over what is free.
 #[test]
 fn a_pushed_robot_flies_back() {
-    // A shaft, one voxel wide, in the floor.
-    let mut walls: BTreeSet<Voxel> = all().filter(|voxel| voxel.z < 3).collect();
-    let shaft = [2, 1, 0].map(|z| Voxel::new(START.x, START.y, z));
-    shaft.iter().for_each(|voxel| {
-        walls.remove(voxel);
-    });
+    let (walls, shaft) = shaft();
     let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
     robot.observe(START, &look(&walls, START));
     robot.tick();
@@ -136,4 +138,22 @@ fn a_push_on_the_way_home_reopens_a_survey_that_has_ended() {
         robot.observe(at, &look(&walls, at));
         assert_eq!(robot.mission.has_errand(), is_told);
     }
+}
+
+/// Pushed on and on where no pose is, a robot gives up too.
+#[test]
+fn a_robot_that_is_kept_off_all_poses_gives_up() {
+    let (walls, shaft) = shaft();
+    let mut robot = Robot::new(CONFIG, RobotId(0), EXTENT, LEVELS).unwrap();
+    robot.observe(START, &look(&walls, START));
+    robot.tick();
+    let places = [shaft[2], shaft[0]].into_iter().cycle();
+    let stop = places.take(5_000).find_map(|at| {
+        robot.observe(at, &look(&walls, at));
+        match robot.tick() {
+            Action::Stop(stop) => Some(stop),
+            _ => None,
+        }
+    });
+    assert!(matches!(stop, Some(Stop::Blocked { .. })), "{stop:?}");
 }

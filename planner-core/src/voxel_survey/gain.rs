@@ -102,12 +102,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let mut rows = 0u32;
         if view.aim(unknown) {
             let _ = view.look(
-                |tile, z| match between {
+                &|tile, z| match between {
                     Between::Free => volume.bad(tile, z),
                     Between::NotOccupied => volume.occupied(tile, z),
                 },
-                unknown,
-                |mut row| {
+                &unknown,
+                &mut |mut row| {
                     if is_weary {
                         // What looks have missed is not looked for any more.
                         rows = rows.saturating_add(1);
@@ -150,12 +150,12 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
             return;
         }
         let _ = view.look(
-            |tile, z| match stands_for {
+            &|tile, z| match stands_for {
                 true => volume.occupied(tile, z),
                 false => volume.bad(tile, z),
             },
-            unknown,
-            |row| {
+            &unknown,
+            &mut |row| {
                 for voxel in row.voxels(field.row(heading, row.south, row.up)) {
                     self.has_missed = true;
                     missed.set(voxel);

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 const PLANNER_CORE: &[&[&str]] = &[
     &["cell", "list", "logging", "math", "zeroed"],
     &["point", "rng", "robot", "tile"],
-    &["cao", "role", "sight", "surface", "volume"],
-    &["map"],
+    &["cao", "role", "sight", "surface"],
+    &["map", "volume"],
     &["radio"],
     &["planner", "survey"],
     &[

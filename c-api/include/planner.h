@@ -66,6 +66,9 @@
 // `fixtures/budget.txt`, and one that tells that it is there.
 #define PLANNER_VOXEL_SURVEY_WORDS 3073
 
+// Voxels that a sensor with 8×8 zones shows at most: 24 for each zone, and the robot's own.
+#define PLANNER_VOXEL_ZONES_SEEN 1537
+
 // Zones of a sensor.
 #define PLANNER_ZONES 64
 
@@ -88,7 +91,7 @@ typedef enum {
   // The scan's pose is not a number, its largest range is not a positive one, or its
   // tolerance is not between 0 and 0.25.
   PLANNER_RESULT_SCAN = 5,
-  // More values than a call takes.
+  // More values than a call takes, or than there is room for.
   PLANNER_RESULT_TOO_MANY = 6,
   // The motion is none of the constants.
   PLANNER_RESULT_MOTION = 7,
@@ -143,7 +146,7 @@ typedef enum {
   PLANNER_RESULT_HEADING = 30,
   // The field of view of a sensor with zones is not above 0 and up to pi/2.
   PLANNER_RESULT_ZONE_FIELD_OF_VIEW = 31,
-  // Its pitch is not between -pi/4 and pi/4.
+  // Its pitch is not between -pi/4 and pi/4; among voxels, -pi/2 and pi/2.
   PLANNER_RESULT_ZONE_PITCH = 32,
   // Its yaw is not finite.
   PLANNER_RESULT_ZONE_YAW = 33,
@@ -553,6 +556,19 @@ typedef struct {
   uint16_t refused;
 } PlannerVoxelStatus;
 
+// Where a flying robot is, in voxels: the voxel x,y,z covers x to x + 1, y to y + 1 and z to
+// z + 1.
+typedef struct {
+  // Position along x, in voxels.
+  float x;
+  // Position along y, in voxels.
+  float y;
+  // Height above the bottom of the lowest level, in voxels.
+  float z;
+  // Where the robot is turned, in radians; grows from east to south.
+  float heading;
+} PlannerVoxelPose;
+
 // A sensor with 8×8 zones, and how it is mounted.
 typedef struct {
   // 0: it tells distances along its axis, as the VL53L5CX, VL53L7CX and VL53L8CX do.
@@ -591,6 +607,38 @@ typedef struct {
   // How far away.
   int16_t distance_mm;
 } PlannerZone;
+
+// A look that sensors are added to, one after the other, for `planner_voxel_observe`.
+typedef struct {
+  // Memory of yours: an array of voxels.
+  PlannerVoxelSeen *seen;
+  // How many it has room for. 24 for each zone or ray, and one for the robot's own voxel,
+  // always suffice: [`PLANNER_VOXEL_ZONES_SEEN`] for a sensor with 8×8 zones.
+  size_t room;
+  // How many of them are in the look: 0 before the first sensor.
+  size_t count;
+} PlannerVoxelLook;
+
+// A vector in the frame of a robot that is level.
+typedef struct {
+  // Its part along the heading.
+  float ahead;
+  // Its part to the right of that.
+  float right;
+  // Its part upwards.
+  float up;
+} PlannerVector;
+
+// One distance measured, by a range finder or a point of a depth image.
+typedef struct {
+  // Where the sensor sits, from the robot's middle, in voxels: less than one away.
+  PlannerVector from;
+  // Where it points to: a vector of length 1. With another length, by more than 0.001, the
+  // ray says nothing.
+  PlannerVector direction;
+  // Distance to what was hit, in voxels, as of `PlannerBeam`.
+  float range;
+} PlannerRay;
 
 #ifdef __cplusplus
 extern "C" {
@@ -883,7 +931,8 @@ PlannerResult planner_voxel_create(PlannerVoxelSurvey *survey,
 // Takes in a look: where the robot is, where its sensor is turned (eighths of a turn from
 // the east over the south; of no matter if it shows all round), and *every* voxel within
 // range, in the field and in sight over free ones, each with whether something is there. One
-// look is one call, and shows at least the robot's own voxel, which is free whatever the map
+// look is one call of an array of any length, at range 8 of 2,109 voxels at most and at range 12 of
+// 7,153, and shows at least the robot's own voxel, which is free whatever the map
 // said of it. A voxel is in sight if the straight line to it, from the middle of the robot's
 // voxel to its own, passes free voxels alone, of the two beside an edge at least one, and
 // about a corner two side by side. A voxel that a look should show and never does ends in
@@ -970,6 +1019,90 @@ PlannerResult planner_voxel_status(PlannerVoxelSurvey *survey, PlannerVoxelStatu
 //
 // Stack: 256 bytes.
 PlannerResult planner_voxel_state(PlannerVoxelSurvey *survey, PlannerVoxel voxel, uint8_t *state);
+
+// The pose of a robot at `x`, `y`, `z` in metres, y to the left of x and z above the bottom of
+// the lowest level, whose `yaw` in radians grows counter-clockwise from x: the frame of ROS and
+// of the Crazyflie. `PLANNER_RESULT_CELL_SIZE`: the configuration's `cell_mm` is 0.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_pose_from_metres(const PlannerVoxelConfig *config,
+                                             float x,
+                                             float y,
+                                             float z,
+                                             float yaw,
+                                             PlannerVoxelPose *pose);
+
+// The voxel that a pose is in, and the nearest of the eight headings, for
+// `planner_voxel_observe`. `PLANNER_RESULT_OFF_GRID`: the pose is not in the box, or not
+// finite, and nothing is written.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_at(const PlannerVoxelConfig *config,
+                               const PlannerVoxelPose *pose,
+                               PlannerVoxel *at,
+                               uint8_t *heading);
+
+// The middle of a voxel in the frame of `planner_voxel_pose_from_metres`, in metres: where to
+// fly for a move to that voxel.
+//
+// Stack: 128 bytes.
+PlannerResult planner_voxel_middle_in_metres(const PlannerVoxelConfig *config,
+                                             PlannerVoxel voxel,
+                                             float *x,
+                                             float *y,
+                                             float *z);
+
+// A heading of `PlannerVoxelAction`, in eighths of a turn, as a yaw in radians,
+// counter-clockwise from the east.
+//
+// Stack: 128 bytes.
+float planner_voxel_yaw(uint8_t heading);
+
+// Makes the field of a configuration `PLANNER_VOXEL_FIELD_CUSTOM`, of a sensor that shows so
+// far up and down, and `side` to each side, in radians, 0 to pi/2; pi/2 up or down is all of
+// it, and a `side` of 0 all round. pi/8 three times for a VL53L5CX that points ahead. `near`
+// stays as it is. `PLANNER_RESULT_SENSOR`: there is no such angle, and nothing has changed.
+//
+// Stack: 384 bytes.
+PlannerResult planner_voxel_set_field(PlannerVoxelConfig *config, float up, float down, float side);
+
+// Adds the voxels to a look that a sensor with 8×8 zones shows: those that the middle line of a
+// zone passes are free, the one that it ends in, or at the face of, is occupied, what is behind
+// stays unknown; a zone without a target shows free voxels alone, up to `max_range_mm` or the
+// range of the configuration. A voxel that one zone hits and another passes is occupied. In the
+// look each voxel is once, the robot's own is one of them, and what lies more than
+// `PLANNER_VOXEL_MAX_RANGE` away along an axis is dropped. `PLANNER_RESULT_TOO_MANY`: there is
+// no room for all. `PLANNER_RESULT_SCAN`: the pose is not finite, or the tolerance not 0 to 0.25.
+// After any result but `PLANNER_RESULT_OK` the look is as it was.
+//
+// `zones` are those of `planner_zone_beams`. Of `sensor` the heights and `cell_mm` are not
+// read, and the pitch may be -pi/2 to pi/2: straight down to straight up. It sits `ahead_mm`
+// from the robot's middle along its axis. `tolerance`: as of `planner_observe_scan`, in voxels.
+// What is passed within it of a face, and what is hit in a corner, is left out: of the voxels
+// in sight a look misses some, which others show.
+//
+// Work: 10 sines and cosines, at most 39 voxels for each zone, and 1,250 words.
+//
+// Stack: 8960 bytes.
+PlannerResult planner_voxel_zones(const PlannerVoxelConfig *config,
+                                  const PlannerVoxelPose *pose,
+                                  const PlannerZoneSensor *sensor,
+                                  float tolerance,
+                                  const PlannerZone *zones,
+                                  PlannerVoxelLook *look);
+
+// The same for other sensors: the points of a depth image, or single range finders, as those
+// that tell what is beside, above and behind the robot. `max_range`: distance in voxels, above
+// 0, up to which every obstacle gives a measurement.
+//
+// Stack: 8320 bytes.
+PlannerResult planner_voxel_rays(const PlannerVoxelConfig *config,
+                                 const PlannerVoxelPose *pose,
+                                 float max_range,
+                                 float tolerance,
+                                 const PlannerRay *rays,
+                                 size_t count,
+                                 PlannerVoxelLook *look);
 
 // Makes beams for `planner_observe_scan` of what a sensor with 8×8 zones measured: one for
 // each column, from left to right, from the robot's middle to the nearest thing that stands

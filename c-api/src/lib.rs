@@ -13,6 +13,7 @@ mod place;
 mod queries;
 mod types;
 mod voxels;
+mod voxels_seen;
 mod zones;
 
 use planner_core::explorer::{Config, Explorer, MAX_CLEARANCE};
@@ -47,6 +48,11 @@ pub use voxels::{
     planner_voxel_create, planner_voxel_energy, planner_voxel_go_home, planner_voxel_hear,
     planner_voxel_observe, planner_voxel_receive, planner_voxel_resume, planner_voxel_state,
     planner_voxel_status, planner_voxel_tick, planner_voxel_transmit,
+};
+pub use voxels_seen::{
+    PLANNER_VOXEL_ZONES_SEEN, PlannerRay, PlannerVector, PlannerVoxelLook, PlannerVoxelPose,
+    planner_voxel_at, planner_voxel_middle_in_metres, planner_voxel_pose_from_metres,
+    planner_voxel_rays, planner_voxel_set_field, planner_voxel_yaw, planner_voxel_zones,
 };
 pub use zones::{
     PLANNER_ZONE_BEAMS, PLANNER_ZONES, PlannerZone, PlannerZoneSensor, planner_zone_beams,

@@ -249,7 +249,7 @@ pub(crate) const RESULTS: [&CStr; 36] = [
     c"no such range",
     c"no such heading",
     c"the field of view is not above 0 and up to pi/2",
-    c"the pitch is not between -pi/4 and pi/4",
+    c"the pitch is not between -pi/4 and pi/4, or -pi/2 and pi/2 among voxels",
     c"the yaw is not finite",
     c"the floor must end below the sensor, and the robot above it",
     c"the largest range and the side of a cell must be above 0",

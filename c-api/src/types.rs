@@ -23,7 +23,7 @@ pub enum PlannerResult {
     /// The scan's pose is not a number, its largest range is not a positive one, or its
     /// tolerance is not between 0 and 0.25.
     Scan = 5,
-    /// More values than a call takes.
+    /// More values than a call takes, or than there is room for.
     TooMany = 6,
     /// The motion is none of the constants.
     Motion = 7,
@@ -79,7 +79,7 @@ pub enum PlannerResult {
     Heading = 30,
     /// The field of view of a sensor with zones is not above 0 and up to pi/2.
     ZoneFieldOfView = 31,
-    /// Its pitch is not between -pi/4 and pi/4.
+    /// Its pitch is not between -pi/4 and pi/4; among voxels, -pi/2 and pi/2.
     ZonePitch = 32,
     /// Its yaw is not finite.
     ZoneYaw = 33,

@@ -285,7 +285,8 @@ pub extern "C" fn planner_voxel_create(
 /// Takes in a look: where the robot is, where its sensor is turned (eighths of a turn from
 /// the east over the south; of no matter if it shows all round), and *every* voxel within
 /// range, in the field and in sight over free ones, each with whether something is there. One
-/// look is one call, and shows at least the robot's own voxel, which is free whatever the map
+/// look is one call of an array of any length, at range 8 of 2,109 voxels at most and at range 12 of
+/// 7,153, and shows at least the robot's own voxel, which is free whatever the map
 /// said of it. A voxel is in sight if the straight line to it, from the middle of the robot's
 /// voxel to its own, passes free voxels alone, of the two beside an edge at least one, and
 /// about a corner two side by side. A voxel that a look should show and never does ends in

@@ -452,6 +452,53 @@ static void zones_become_beams(void) {
     free(front);
 }
 
+// Any zones and rays, into memory of just the size: no byte behind it is touched.
+static void zones_become_looks(void) {
+    PlannerVoxelConfig *config = calloc(1, sizeof *config);
+    PlannerZone *zones = calloc(PLANNER_ZONES, sizeof *zones);
+    PlannerVoxelSeen *seen = calloc(PLANNER_VOXEL_ZONES_SEEN, sizeof *seen);
+    PlannerVoxelPose pose;
+    config->width = config->depth = 40;
+    config->levels = 16;
+    config->range = 255;
+    const PlannerZoneSensor front = {.field_of_view = 1.57f, .max_range_mm = 65535, .ahead_mm = 10};
+    CHECK(planner_voxel_pose_from_metres(config, 1, -1, 1, 0, &pose), PLANNER_RESULT_CELL_SIZE);
+    config->cell_mm = 50;
+    CHECK(planner_voxel_pose_from_metres(config, 1, -1, 0.4f, 0, &pose), PLANNER_RESULT_OK);
+    PlannerVoxel at;
+    uint8_t heading;
+    CHECK(planner_voxel_at(config, &pose, &at, &heading), PLANNER_RESULT_OK);
+    uint32_t random = 1;
+    for (int i = 0; i < 1000; i++) {
+        for (int zone = 0; zone < PLANNER_ZONES; zone++) {
+            random = random * 1103515245u + 12345u;
+            zones[zone].status = (random >> 16 & 1) ? 255 : 5;
+            zones[zone].distance_mm = (int16_t)(random >> 18 & 1023);
+        }
+        pose.heading = (float)i;
+        PlannerVoxelLook look = {seen, PLANNER_VOXEL_ZONES_SEEN, 0};
+        CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, &look), PLANNER_RESULT_OK);
+        CHECK(look.count > 0 && look.count <= look.room, true);
+        look.room = look.count;
+        const PlannerRay up = {{0, 0, 0}, {0, 0, 1}, (float)(i % 20) + 0.5f};
+        PlannerResult result = planner_voxel_rays(config, &pose, 12, 0.1f, &up, 1, &look);
+        CHECK(result == PLANNER_RESULT_OK || result == PLANNER_RESULT_TOO_MANY, true);
+    }
+    PlannerVoxelLook nowhere = {NULL, 9, 0};
+    CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, &nowhere), PLANNER_RESULT_NULL);
+    nowhere.count = (size_t)-1;
+    CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, &nowhere), PLANNER_RESULT_TOO_MANY);
+    CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, NULL), PLANNER_RESULT_NULL);
+    CHECK(planner_voxel_rays(config, NULL, 12, 0, NULL, 0, &nowhere), PLANNER_RESULT_NULL);
+    CHECK(planner_voxel_set_field(NULL, 1, 1, 1), PLANNER_RESULT_NULL);
+    CHECK(planner_voxel_set_field(config, -1, 1, 1), PLANNER_RESULT_SENSOR);
+    CHECK(planner_voxel_middle_in_metres(config, at, NULL, NULL, NULL), PLANNER_RESULT_NULL);
+    CHECK(planner_voxel_yaw(255) < 4, true);
+    free(seen);
+    free(zones);
+    free(config);
+}
+
 int main(void) {
     Planner *planner = malloc(sizeof *planner);
     a_failed_create_changes_nothing(planner);
@@ -461,6 +508,7 @@ int main(void) {
     maps_are_read(planner);
     among_voxels();
     zones_become_beams();
+    zones_become_looks();
     // Reasons by number, also those that do not exist.
     for (int stop = 0; stop < 256; stop++) {
         bool is_complete = stop == PLANNER_STOP_COMPLETE || stop == PLANNER_STOP_ENCLOSED

@@ -2,6 +2,7 @@
 
 mod looks;
 mod misuse;
+mod zones;
 
 use planner_core::radio::LinkConfig;
 use planner_core::volume::{Field, Heading, Voxel, in_sight};

@@ -85,7 +85,7 @@ pub struct ZoneSensor {
 pub enum ZoneError {
     /// The field of view is not above 0 and up to π/2.
     FieldOfView,
-    /// The pitch is not between -π/4 and π/4.
+    /// The pitch is not between -π/4 and π/4, or, among voxels, -π/2 and π/2.
     Pitch,
     /// The yaw is not finite.
     Yaw,
@@ -99,7 +99,7 @@ impl fmt::Display for ZoneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::FieldOfView => "the field of view is not above 0 and up to π/2",
-            Self::Pitch => "the pitch is not between -π/4 and π/4",
+            Self::Pitch => "the pitch is not between -π/4 and π/4, or -π/2 and π/2 among voxels",
             Self::Yaw => "the yaw is not finite",
             Self::Heights => "the floor must end below the sensor, and the robot above it",
             Self::Zero => "the largest range and the side of a cell must be above 0",

@@ -1,6 +1,7 @@
 //! What a sensor shows of what is in sight: its field of view, and where it is turned.
 
 use super::{MAX_REACH, Voxel};
+use crate::math;
 
 /// Furthest voxel of a row.
 const REACH: i32 = MAX_REACH as i32;
@@ -124,6 +125,19 @@ impl Field {
         near: 2,
     };
 
+    /// That of a sensor that shows so far up and down, and `side` to each side, in radians, 0 to
+    /// π/2; π/2 up or down is all of it. Other angles count as the nearest of these. A
+    /// VL53L5CX that points ahead has `Field::of_angles(FRAC_PI_8, FRAC_PI_8, Some(FRAC_PI_8),
+    /// 0)`: 106, 106 and 106. Work: three sines and cosines.
+    pub fn of_angles(up: f32, down: f32, side: Option<f32>, near: u8) -> Self {
+        Self {
+            up: slope(up),
+            down: slope(down),
+            side: side.map(|side| slope(side).min(Self::STEEP - 1)),
+            near,
+        }
+    }
+
     /// The same field of a robot whose body reaches `clearance` voxels beyond the one of its
     /// middle: it feels at least where the body comes to next, `clearance` + 1 voxels far.
     pub const fn for_body(self, clearance: u8) -> Self {
@@ -233,6 +247,16 @@ impl Field {
             northeast,
         ];
         rows.map(|row| near | row)
+    }
+}
+
+/// The tangent of an angle of 0 to π/2 in 256ths, rounded down.
+fn slope(angle: f32) -> u16 {
+    let (sin, cos) = math::direction(angle.clamp(0.0, core::f32::consts::FRAC_PI_2));
+    let tangent = 256.0 * sin / cos.max(0.0);
+    match tangent < f32::from(Field::STEEP) {
+        true => tangent as u16,
+        false => Field::STEEP,
     }
 }
 
@@ -346,6 +370,37 @@ mod tests {
             let apart = |a: u8, b: u8| ((a + 8 - b) % 8).min((b + 8 - a) % 8);
             let left = apart(to, from) - apart(to, from).min(most);
             prop_assert_eq!(apart(to, turned.eighths()), left);
+        }
+    }
+
+    /// Against the tangents of doubles; and a body feels where it comes to next.
+    #[test]
+    fn fields_are_those_of_their_angles() {
+        use core::f32::consts::{FRAC_PI_2, FRAC_PI_8};
+        let eighth = Some(FRAC_PI_8);
+        let zones = Field::of_angles(FRAC_PI_8, FRAC_PI_8, eighth, 0);
+        let wanted = Field {
+            up: 106,
+            down: 106,
+            side: Some(106),
+            near: 0,
+        };
+        assert_eq!(zones, wanted);
+        for degrees in 0..90u16 {
+            let angle = f64::from(degrees).to_radians();
+            let field = Field::of_angles(angle as f32, 0.0, None, 3);
+            let off = angle.tan() * 256.0 - f64::from(field.up);
+            assert!((-0.01..1.01).contains(&off), "{degrees}: {off}");
+            assert_eq!((field.down, field.near), (0, 3));
+        }
+        for right in [FRAC_PI_2, 2.0, f32::INFINITY] {
+            let round = Field::of_angles(right, right, None, 2);
+            assert_eq!(round, Field::ALL_ROUND);
+        }
+        assert_eq!(Field::of_angles(-1.0, -1.0, None, 2), Field::LIDAR);
+        assert_eq!(Field::ALL_ROUND.for_body(3), Field::ALL_ROUND);
+        for (clearance, near) in [(0, 2), (1, 2), (2, 3), (3, 4)] {
+            assert_eq!(Field::CAMERA.for_body(clearance).near, near);
         }
     }
 

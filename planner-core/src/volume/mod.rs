@@ -10,15 +10,21 @@
 mod body;
 mod field;
 mod layer;
+mod look;
+mod metres;
 mod sight;
 mod view;
+mod zones;
 
 pub use body::{MAX_CLEARANCE, body_voxels};
 pub(crate) use body::{voxel_work, word_work};
 pub use field::{Field, Heading};
 pub(crate) use layer::Layer;
+pub use look::{Ray, Vector, VoxelLook};
+pub use metres::VoxelPose;
 pub use sight::in_sight;
 pub(crate) use view::{MAX_REACH, View};
+pub use zones::ZoneRays;
 
 use core::fmt;
 

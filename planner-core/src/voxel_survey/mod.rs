@@ -351,6 +351,8 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
     /// [`waiting`](Self::waiting) is [`Wait::Pose`], until a pose is good again. The voxel that
     /// the robot is in is free, seen or not, whatever the map said of it.
     ///
+    /// Where distances are measured, [`VoxelLook`](crate::volume::VoxelLook) makes looks of them.
+    ///
     /// Cost: the voxels seen; and at most a ray for each voxel within range.
     pub fn observe(&mut self, at: Voxel, seen: &[(Voxel, bool)]) {
         self.observe_towards(at, self.heading(), seen);

@@ -163,7 +163,7 @@ impl fmt::Display for Extent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ExtentError {
-    /// A grid without cells.
+    /// A grid without cells, or a box without levels.
     Empty,
     /// The grid is larger than the map was compiled for.
     TooLarge {
@@ -172,8 +172,6 @@ pub enum ExtentError {
         /// What fits.
         capacity: Extent,
     },
-    /// A box without levels.
-    NoLevels,
     /// The box has more levels than the map was compiled for.
     TooHigh {
         /// What was asked for.
@@ -194,7 +192,6 @@ impl fmt::Display for ExtentError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the grid has no cells"),
-            Self::NoLevels => write!(f, "the box has no levels"),
             Self::TooLarge { asked, capacity } => write!(
                 f,
                 "a grid of {asked} cells does not fit a map compiled for {capacity}"

@@ -183,7 +183,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Volume<TW, TH, L> {
     pub fn reset(&mut self, extent: Extent, levels: u8) -> Result<(), ExtentError> {
         extent.fits(Extent::new((TW * TILE) as u16, (TH * TILE) as u16))?;
         if levels == 0 {
-            return Err(ExtentError::NoLevels);
+            return Err(ExtentError::Empty);
         }
         if usize::from(levels) > L {
             return Err(ExtentError::TooHigh {

@@ -74,7 +74,7 @@ fn a_robot_without_a_look_waits() {
 #[test]
 fn a_box_without_levels_is_refused() {
     let robot = Robot::new(CONFIG, RobotId(0), EXTENT, 0);
-    assert_eq!(robot.unwrap_err(), ExtentError::NoLevels);
+    assert_eq!(robot.unwrap_err(), ExtentError::Empty);
 }
 
 proptest! {

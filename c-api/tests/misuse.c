@@ -484,7 +484,7 @@ static void zones_become_looks(void) {
         PlannerResult result = planner_voxel_rays(config, &pose, 12, 0.1f, &up, 1, &look);
         CHECK(result == PLANNER_RESULT_OK || result == PLANNER_RESULT_TOO_MANY, true);
     }
-    PlannerVoxelLook nowhere = {NULL, 9, 0};
+    PlannerVoxelLook nowhere = {NULL, PLANNER_VOXEL_ZONES_SEEN, 0};
     CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, &nowhere), PLANNER_RESULT_NULL);
     nowhere.count = (size_t)-1;
     CHECK(planner_voxel_zones(config, &pose, &front, 0, zones, &nowhere), PLANNER_RESULT_TOO_MANY);

@@ -193,21 +193,17 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
 
     /// The robot stands at `voxel`: nothing else is there.
     pub(super) fn stand(&mut self, voxel: Voxel) {
-        if self.volume.learn(voxel, false)
-            && let Some((tile, z, _)) = voxel.place()
-        {
-            self.news.add(tile, z);
-        }
-        match self.sensor {
-            Sensor::Truthful => self.volume.stand(voxel),
-            Sensor::Errs if self.volume.content(voxel) == Content::Occupied => {
-                if self.withdraw(voxel)
-                    && let Some((tile, z, _)) = voxel.place()
-                {
-                    self.news.add(tile, z);
-                }
+        let has_changed = match (self.volume.content(voxel), self.sensor) {
+            (Content::Free, _) => false,
+            (Content::Unknown, _) => self.volume.learn(voxel, false),
+            (Content::Occupied, Sensor::Errs) => self.withdraw(voxel),
+            (Content::Occupied, Sensor::Truthful) => {
+                self.volume.stand(voxel);
+                false
             }
-            Sensor::Errs => {}
+        };
+        if has_changed && let Some((tile, z, _)) = voxel.place() {
+            self.news.add(tile, z);
         }
     }
 

@@ -392,7 +392,7 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         let mut is_silent = true;
         for seen in seen {
             let &(voxel, occupied) = seen.borrow();
-            is_silent &= !self.volume.contains(voxel);
+            is_silent = is_silent && !self.volume.contains(voxel);
             // Where the robot is nothing else is.
             let occupied = occupied && voxel != at;
             if self.take_in(voxel, occupied)

@@ -145,7 +145,7 @@ impl<const TW: usize, const TH: usize, const L: usize> Far<TW, TH, L> {
     /// whether there is one.
     fn find_row(&mut self, y: u8, z: u8) -> bool {
         let mut from = u64::MAX.checked_shl(y.into()).unwrap_or(0);
-        for (z, &rows) in (0u8..).zip(&self.rows).skip(z.into()) {
+        for (&rows, z) in self.rows.iter().zip(0u8..).skip(z.into()) {
             let rows = rows & from;
             if rows != 0 {
                 self.cursor = (TileIndex::new(0, rows.trailing_zeros() as u8), z);
@@ -386,5 +386,22 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
         self.far.stage = Stage::Back(at);
         Found::Searching
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In a box of as many levels as there can be, too.
+    #[test]
+    fn the_wave_goes_on_at_the_next_row_that_it_may_enter() {
+        let mut far = Far::<1, 1, 255>::vacant();
+        assert!(!far.find_row(0, 0));
+        let [.., last] = &mut far.rows;
+        *last = 0b100;
+        assert!(far.find_row(1, 9));
+        assert_eq!(far.cursor, (TileIndex { x: 0, y: 2 }, 254));
+        assert!(!far.find_row(3, 254));
     }
 }

@@ -160,7 +160,12 @@ impl SurveyScene {
                 ui.input(|input| (input.zoom_delta(), input.smooth_scroll_delta().y));
             turn.zoom = (turn.zoom * pinch * (wheel / 300.0).exp()).clamp(0.5, 12.0);
         }
-        let eye = Eye::new(self.flight.extent(), *turn, rect);
+        let eye = Eye::new(
+            self.flight.extent(),
+            self.flight.is_northward(),
+            *turn,
+            rect,
+        );
         let painter = ui.painter_at(rect);
         painter.add(self.flight.ground(self.shown, &eye, layers, &colors));
         if layers.ceiling && self.levels().is_none() {

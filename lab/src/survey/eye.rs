@@ -32,6 +32,8 @@ impl Default for Turn {
 /// Turned about the middle of the scene, without perspective.
 pub(super) struct Eye {
     middle: Vec2,
+    /// 1 where y leads south, -1 where it leads north.
+    south: f32,
     centre: Pos2,
     sine: f32,
     cosine: f32,
@@ -42,12 +44,14 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    pub(super) fn new(extent: Extent, turn: Turn, rect: Rect) -> Self {
+    /// Of a place whose y leads north if it is `northward`, else south.
+    pub(super) fn new(extent: Extent, northward: bool, turn: Turn, rect: Rect) -> Self {
         let size = vec2(extent.width.into(), extent.height.into());
         let room = SHAPE * size.length();
         let fitting = (rect.width() / room.x).min(rect.height() / room.y);
         Self {
             middle: size / 2.0,
+            south: if northward { -1.0 } else { 1.0 },
             centre: rect.center() + vec2(0.0, rect.height() * 0.05),
             sine: turn.about.sin(),
             cosine: turn.about.cos(),
@@ -58,7 +62,7 @@ impl Eye {
     }
 
     pub(super) fn project(&self, x: f32, y: f32, z: f32) -> Pos2 {
-        let (x, y) = (x - self.middle.x, y - self.middle.y);
+        let (x, y) = (x - self.middle.x, (y - self.middle.y) * self.south);
         let right = x * self.cosine - y * self.sine;
         let near = x * self.sine + y * self.cosine;
         self.centre + vec2(right, near * self.down - z * self.along) * self.scale
@@ -77,15 +81,16 @@ impl Eye {
         self.sine > 0.0
     }
 
-    pub(super) fn south_is_near(&self) -> bool {
-        self.cosine > 0.0
+    /// Whether what has the larger y is nearer.
+    pub(super) fn end_is_near(&self) -> bool {
+        self.cosine * self.south > 0.0
     }
 
     /// All columns, far ones first.
     pub(super) fn columns(&self, extent: Extent) -> impl Iterator<Item = (i16, i16)> + use<> {
         let (width, height) = (extent.width as i16, extent.height as i16);
         let far = |at, end, end_is_near| if end_is_near { at } else { end - 1 - at };
-        let (east, south) = (self.east_is_near(), self.south_is_near());
+        let (east, south) = (self.east_is_near(), self.end_is_near());
         (0..height).flat_map(move |y| {
             (0..width).map(move |x| (far(x, width, east), far(y, height, south)))
         })
@@ -125,7 +130,7 @@ impl<'a> Blocks<'a> {
 
     /// The side that faces the eye in the south or north.
     pub(super) fn along(&mut self, (x, y): (f32, f32), (low, high): (f32, f32), color: Color32) {
-        let y = if self.eye.south_is_near() { y + 1.0 } else { y };
+        let y = if self.eye.end_is_near() { y + 1.0 } else { y };
         let at = |dx, z| self.eye.project(x + dx, y, z);
         let corners = [at(0.0, high), at(1.0, high), at(1.0, low), at(0.0, low)];
         self.quad(corners, mix(color, Color32::BLACK, 0.45));

@@ -73,6 +73,9 @@ pub(super) trait Flight {
     /// Its size on the ground plan.
     fn extent(&self) -> Extent;
 
+    /// Whether y leads north in it, as in files of scenes, and not south.
+    fn is_northward(&self) -> bool;
+
     /// Levels of voxels, if it is made of them.
     fn levels(&self) -> Option<u8>;
 

@@ -134,6 +134,11 @@ impl Flight for Heights {
         self.terrain.name()
     }
 
+    fn is_northward(&self) -> bool {
+        let scale = self.terrain.scale();
+        scale.is_some_and(|scale| scale.northward)
+    }
+
     fn extent(&self) -> Extent {
         self.terrain.extent()
     }

@@ -94,22 +94,22 @@ fn quarter(part: i16) -> f32 {
     f32::from(part) / f32::from(PARTS) * std::f32::consts::FRAC_PI_2
 }
 
-/// From east over south, in radians.
+/// From x to y, in radians.
 fn angle(heading: Heading) -> f32 {
     f32::from(heading.eighths()) * std::f32::consts::FRAC_PI_4
 }
 
-/// A direction of the plan in words.
+/// A direction in words, among voxels, where y leads north.
 pub(super) fn name(heading: Heading) -> &'static str {
     const NAMES: [&str; 8] = [
         "east",
-        "south-east",
-        "south",
-        "south-west",
-        "west",
-        "north-west",
-        "north",
         "north-east",
+        "north",
+        "north-west",
+        "west",
+        "south-west",
+        "south",
+        "south-east",
     ];
     NAMES[usize::from(heading.eighths())]
 }

@@ -149,6 +149,10 @@ impl Flight for Voxels {
         self.trace().scene.name()
     }
 
+    fn is_northward(&self) -> bool {
+        true
+    }
+
     fn extent(&self) -> Extent {
         self.trace().scene.extent()
     }
@@ -198,7 +202,7 @@ impl Flight for Voxels {
             _ => Look::Nothing,
         };
         let east = if eye.east_is_near() { 1 } else { -1 };
-        let south = if eye.south_is_near() { 1 } else { -1 };
+        let south = if eye.end_is_near() { 1 } else { -1 };
         let mut blocks = Blocks::new(eye);
         for (x, y) in eye.columns(extent) {
             for z in 0..i16::from(levels) {

@@ -16,12 +16,13 @@ impl Heading {
     /// Towards greater x.
     pub const EAST: Self = Self(0);
 
-    /// So many eighths of a turn from east, over south.
+    /// So many eighths of a turn from x to y.
     pub const fn new(eighths: u8) -> Self {
         Self(eighths % 8)
     }
 
-    /// Eighths of a turn from east, over south: 0 to 7.
+    /// Eighths of a turn from x to y, 0 to 7: from east to north in a scene of a file, whose y leads
+    /// north.
     pub const fn eighths(self) -> u8 {
         self.0 % 8
     }

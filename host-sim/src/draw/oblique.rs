@@ -93,7 +93,7 @@ pub(super) fn voxels(trace: &VoxelTrace, tick: u32, cut: Option<i16>) -> Drawn {
 }
 
 /// The level at which a view from aside is cut unless somebody chose one: none if the first start is
-/// under the sky, or else [`rooms`], which a ceiling would hide.
+/// under the sky, or else where rooms are, which a ceiling would hide.
 pub fn usual_cut(trace: &VoxelTrace) -> Option<i16> {
     rooms(trace).filter(|_| trace.starts_covered())
 }

@@ -102,7 +102,8 @@ fn baselines_among_voxels_see_all_and_stop_truthfully() {
 /// What the planner is compared with believes what it sees: looks that err are refused by name.
 #[test]
 fn baselines_among_voxels_refuse_looks_that_err() {
-    let errs: [(&str, fn(&mut Scenario)); 3] = [
+    type Err = fn(&mut Scenario);
+    let errs: [(&str, Err); 3] = [
         ("false-walls", |scenario| {
             scenario.conditions.trouble.false_walls = 0.01;
         }),

@@ -23,7 +23,7 @@ pub(crate) use layer::Layer;
 pub use look::{Ray, Vector, VoxelLook};
 pub use metres::VoxelPose;
 pub use sight::in_sight;
-pub(crate) use view::{MAX_REACH, View};
+pub(crate) use view::{MAX_REACH, Row, View};
 pub use zones::ZoneRays;
 
 use core::fmt;

@@ -80,12 +80,6 @@ impl Row {
     }
 }
 
-/// The words of a layer, by tile and level.
-type Words<'a> = dyn Fn(TileIndex, u8) -> u64 + 'a;
-
-/// What is done with a row; says whether to look on.
-type Found<'a> = dyn FnMut(Row) -> ControlFlow<()> + 'a;
-
 /// What the bounds say of a row of an octant, the eye's side at bit 0.
 #[derive(Clone, Copy)]
 struct Front {
@@ -194,9 +188,9 @@ impl View {
     /// up and then down until it breaks off, and a ray for each voxel between the bounds.
     pub(crate) fn look(
         &mut self,
-        blocked: &Words<'_>,
-        wanted: &Words<'_>,
-        found: &mut Found<'_>,
+        blocked: impl Fn(TileIndex, u8) -> u64,
+        wanted: impl Fn(TileIndex, u8) -> u64,
+        mut found: impl FnMut(Row) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         let Self { ahead, back, .. } = *self;
         self.work = self.work.saturating_add(BEGIN);
@@ -210,11 +204,11 @@ impl View {
             }
             for k in 0..=u32::from(most) {
                 let dz = signed(k, is_down);
-                let stops = self.slab(dz, blocked);
+                let stops = self.slab(dz, &blocked);
                 if let Some(place) = levels.get_mut(index(dz)) {
                     *place = stops;
                 }
-                let slab = self.slab(dz, wanted);
+                let slab = self.slab(dz, &wanted);
                 let mut is_reached = false;
                 for (number, fronts) in fronts.iter_mut().enumerate() {
                     let (is_west, is_north) = (number & 1 != 0, number & 2 != 0);
@@ -228,7 +222,7 @@ impl View {
                     let is_empty = is_west && back[0] == 0 || is_north && back[1] == 0;
                     if !is_empty {
                         is_reached |=
-                            self.look_at_level(octant, k, &levels, &slab, fronts, found)?;
+                            self.look_at_level(octant, k, &levels, &slab, fronts, &mut found)?;
                     }
                 }
                 if !is_reached {
@@ -249,7 +243,7 @@ impl View {
         levels: &[Slab; SPAN],
         wanted: &Slab,
         fronts: &mut [Front; REACH + 1],
-        found: &mut Found<'_>,
+        found: &mut impl FnMut(Row) -> ControlFlow<()>,
     ) -> ControlFlow<(), bool> {
         let Self {
             eye,
@@ -317,7 +311,7 @@ impl View {
     }
 
     /// The rows of the level that far above the eye.
-    fn slab(&mut self, dz: i16, layer: &Words<'_>) -> Slab {
+    fn slab(&mut self, dz: i16, layer: impl Fn(TileIndex, u8) -> u64) -> Slab {
         let mut slab = [0; SPAN];
         let Ok(z) = u8::try_from(self.eye.z.saturating_add(dz)) else {
             return slab;

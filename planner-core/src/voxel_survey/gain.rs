@@ -4,7 +4,7 @@ use core::ops::ControlFlow;
 
 use super::{SLICE, VoxelSurvey};
 use crate::tile::{TILE, TileIndex, bits};
-use crate::volume::{Heading, View, Voxel, word_work};
+use crate::volume::{Field, Heading, Layer, Row, View, Volume, Voxel, word_work};
 
 /// Work of a word of which the poses are found.
 const WORD: u32 = 10;
@@ -89,48 +89,30 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         }
     }
 
-    // Not in line: one view at a time is on the stack.
-    #[inline(never)]
     fn count(&mut self, pose: Voxel, enough: u32, between: Between) -> (u32, Heading) {
-        let (volume, field) = (&self.volume, self.field);
-        let looked = self.looked_from(pose);
-        let unknown = |tile, z| volume.unknown(tile, z);
-        let (missed, is_weary) = (&self.missed, self.doubts.is_weary(volume.known_voxels()));
+        let volume = &self.volume;
         let mut view = View::new(pose, self.range);
-        let mut gains = Gains::default();
-        let mut most = 0u32;
-        let mut rows = 0u32;
-        if view.aim(unknown) {
-            let _ = view.look(
-                &|tile, z| match between {
-                    Between::Free => volume.bad(tile, z),
-                    Between::NotOccupied => volume.occupied(tile, z),
-                },
-                &unknown,
-                &mut |mut row| {
-                    if is_weary {
-                        // What looks have missed is not looked for any more.
-                        rows = rows.saturating_add(1);
-                        row.leave_out(|voxel| missed.get(voxel));
-                    }
-                    if field.is_whole() {
-                        most = most.saturating_add(row.count());
-                    } else {
-                        rows = rows.saturating_add(1);
-                        gains.add(row.bits, field.rows(row.south, row.up), looked);
-                        most = gains.best().0;
-                    }
-                    if most < enough {
-                        ControlFlow::Continue(())
-                    } else {
-                        ControlFlow::Break(())
-                    }
-                },
+        let mut gain = Gain {
+            given_up: (self.doubts.is_weary(volume.known_voxels())).then_some(&self.missed),
+            field: self.field,
+            looked: self.looked_from(pose),
+            enough,
+            most: 0,
+            by_heading: Gains::default(),
+            rows: 0,
+        };
+        if view.aim(|tile, z| volume.unknown(tile, z)) {
+            look(
+                volume,
+                &mut view,
+                between,
+                false,
+                &mut Tally::Gain(&mut gain),
             );
         }
-        let work = view.work.saturating_add(rows.saturating_mul(SHOWN));
+        let work = view.work.saturating_add(gain.rows.saturating_mul(SHOWN));
         self.work = self.work.saturating_add(work);
-        (most.min(enough), gains.best().1)
+        (gain.most.min(enough), gain.by_heading.best().1)
     }
 
     /// Notes the voxels that the look from here should have shown and did not: unknown
@@ -149,21 +131,104 @@ impl<const TW: usize, const TH: usize, const L: usize> VoxelSurvey<TW, TH, L> {
         if !view.aim(|tile, z| unknown(tile, z) & !missed.word(tile, z)) {
             return;
         }
-        let _ = view.look(
-            &|tile, z| match stands_for {
-                true => volume.occupied(tile, z),
-                false => volume.bad(tile, z),
-            },
-            &unknown,
-            &mut |row| {
-                for voxel in row.voxels(field.row(heading, row.south, row.up)) {
-                    self.has_missed = true;
+        let between = match stands_for {
+            true => Between::NotOccupied,
+            false => Between::Free,
+        };
+        let mut tally = Tally::Missed {
+            missed,
+            has_missed: &mut self.has_missed,
+            field,
+            heading,
+        };
+        look(volume, &mut view, between, !stands_for, &mut tally);
+    }
+}
+
+/// What a view is looked over for.
+enum Tally<'a, 'm, const TW: usize, const TH: usize, const L: usize> {
+    Gain(&'a mut Gain<'m, TW, TH, L>),
+    Missed {
+        missed: &'a mut Layer<TW, TH, L>,
+        has_missed: &'a mut bool,
+        field: Field,
+        heading: Heading,
+    },
+}
+
+/// What a view would show.
+struct Gain<'m, const TW: usize, const TH: usize, const L: usize> {
+    /// What looks have missed and is not looked for any more.
+    given_up: Option<&'m Layer<TW, TH, L>>,
+    field: Field,
+    /// Headings that were looked at.
+    looked: u8,
+    enough: u32,
+    most: u32,
+    by_heading: Gains,
+    /// Rows that took more than others.
+    rows: u32,
+}
+
+impl<const TW: usize, const TH: usize, const L: usize> Tally<'_, '_, TW, TH, L> {
+    /// Adds a row; says whether to look on.
+    fn add(&mut self, mut row: Row) -> ControlFlow<()> {
+        match self {
+            Self::Gain(gain) => {
+                if let Some(missed) = gain.given_up {
+                    gain.rows = gain.rows.saturating_add(1);
+                    row.leave_out(|voxel| missed.get(voxel));
+                }
+                if gain.field.is_whole() {
+                    gain.most = gain.most.saturating_add(row.count());
+                } else {
+                    gain.rows = gain.rows.saturating_add(1);
+                    let shown = gain.field.rows(row.south, row.up);
+                    gain.by_heading.add(row.bits, shown, gain.looked);
+                    gain.most = gain.by_heading.best().0;
+                }
+                if gain.most >= gain.enough {
+                    return ControlFlow::Break(());
+                }
+            }
+            Self::Missed {
+                missed,
+                has_missed,
+                field,
+                heading,
+            } => {
+                for voxel in row.voxels(field.row(*heading, row.south, row.up)) {
+                    **has_missed = true;
                     missed.set(voxel);
                 }
-                ControlFlow::Continue(())
-            },
-        );
+            }
+        }
+        ControlFlow::Continue(())
     }
+}
+
+/// Looks over the unknown voxels of a view, or those of them that are `beside_free` ones.
+// In one place for all views, and not in line: the code is large, and one view at a time is on the
+// stack.
+#[inline(never)]
+fn look<const TW: usize, const TH: usize, const L: usize>(
+    volume: &Volume<TW, TH, L>,
+    view: &mut View,
+    between: Between,
+    beside_free: bool,
+    tally: &mut Tally<'_, '_, TW, TH, L>,
+) {
+    let _ = view.look(
+        |tile, z| match between {
+            Between::Free => volume.bad(tile, z),
+            Between::NotOccupied => volume.occupied(tile, z),
+        },
+        |tile, z| match beside_free {
+            true => volume.unknown_beside_free(tile, z),
+            false => volume.unknown(tile, z),
+        },
+        |row| tally.add(row),
+    );
 }
 
 /// Voxels that a look would show, by heading.

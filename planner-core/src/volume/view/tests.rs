@@ -63,7 +63,7 @@ proptest! {
         view.aim(|tile, z| asked.word(tile, z));
         let mut seen: Vec<Voxel> = Vec::new();
         let mut count = 0;
-        let ended = view.look(&|tile, z| stops.word(tile, z), &|tile, z| asked.word(tile, z), &mut |row| {
+        let ended = view.look(|tile, z| stops.word(tile, z), |tile, z| asked.word(tile, z), |row| {
             count += row.count() as usize;
             seen.extend(row.voxels(u32::MAX));
             ControlFlow::Continue(())
@@ -88,12 +88,16 @@ fn what_is_open_needs_no_ray() {
     let mut view = View::new(Voxel::new(14, 13, 9), 8);
     assert!(view.aim(|_, _| !0));
     let mut rows = 0;
-    let everything = view.look(&|_, _| 0, &|_, _| !0, &mut |_| {
-        rows += 1;
-        ControlFlow::Continue(())
-    });
+    let everything = view.look(
+        |_, _| 0,
+        |_, _| !0,
+        |_| {
+            rows += 1;
+            ControlFlow::Continue(())
+        },
+    );
     assert!(everything.is_continue() && rows > 300);
-    let first = view.look(&|_, _| 0, &|_, _| !0, &mut |_| ControlFlow::Break(()));
+    let first = view.look(|_, _| 0, |_, _| !0, |_| ControlFlow::Break(()));
     assert!(first.is_break());
     // The words of 17 levels and the rows of two octants at most.
     assert!(view.work < 2000, "{}", view.work);

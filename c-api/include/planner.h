@@ -948,7 +948,7 @@ PlannerResult planner_voxel_create(PlannerVoxelSurvey *survey,
 //
 // Work: the voxels seen, and at most a ray for each voxel within range.
 //
-// Stack: 4096 bytes.
+// Stack: 4352 bytes.
 PlannerResult planner_voxel_observe(PlannerVoxelSurvey *survey,
                                     PlannerVoxel at,
                                     uint8_t heading,

@@ -302,7 +302,7 @@ pub extern "C" fn planner_voxel_create(
 ///
 /// Work: the voxels seen, and at most a ray for each voxel within range.
 ///
-/// Stack: 4096 bytes.
+/// Stack: 4352 bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn planner_voxel_observe(
     survey: *mut PlannerVoxelSurvey,
